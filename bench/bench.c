@@ -1,0 +1,12 @@
+#include "bench.h"
+
+#include <stddef.h>
+
+const struct bench *bench_at(size_t index)
+{
+  static const struct bench all[] = {
+      {"sweep", "how fast is the fluid sweep, against a plain read-modify-write of its memory?", bench_sweep},
+      {"drag", "how does the drag of a square array depend on form, rates and viscosity?", bench_drag},
+  };
+  return index < sizeof all / sizeof all[0] ? &all[index] : NULL;
+}

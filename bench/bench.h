@@ -1,0 +1,30 @@
+/* Benchmarks: one file per question, run by `delbm bench NAME`. Each verifies what it times, prints a table and, on request, adds
+ * to a JSON report. */
+#ifndef DELBM_BENCH_BENCH_H
+#define DELBM_BENCH_BENCH_H
+
+#include "base/status.h"
+
+#include <stdio.h>
+
+/* Where a benchmark leaves its figures. `json` is NULL unless --json was given; what is written there are the members of an
+ * object of the benchmark's name. */
+struct bench_report {
+  FILE *json;
+  bool quick; /* less of everything: does it run, not how fast */
+};
+
+typedef bool bench_run(const struct bench_report *report, struct status *status);
+
+struct bench {
+  const char *name;
+  const char *question;
+  bench_run *run;
+};
+
+bench_run bench_sweep, bench_drag;
+
+/* All benchmarks; NULL past the last. */
+const struct bench *bench_at(size_t index);
+
+#endif

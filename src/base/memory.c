@@ -1,0 +1,77 @@
+#include "base/memory.h"
+
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+
+static const size_t huge_page = (size_t)2 << 20;
+
+static bool out_of_memory(const char *what, double bytes, struct status *status)
+{
+  return status_fail(status, DELBM_FAILED, "out of memory: %s takes %.3g GiB", what, bytes / (1 << 30));
+}
+
+static size_t round_up(size_t n, size_t to)
+{
+  return (n + to - 1) / to * to;
+}
+
+void *memory_allocate(size_t count, size_t size, const char *what, struct status *status)
+{
+  size_t bytes = 0;
+  void *pointer = NULL;
+  if (!__builtin_mul_overflow(count, size, &bytes) && bytes < SIZE_MAX / 2) {
+    bytes = bytes ? round_up(bytes, CACHE_LINE) : CACHE_LINE;
+    pointer = aligned_alloc(CACHE_LINE, bytes);
+  }
+  if (!pointer) {
+    out_of_memory(what, (double)count * (double)size, status);
+    return NULL;
+  }
+  return memset(pointer, 0, bytes);
+}
+
+bool memory_grow(void *array, size_t *capacity, size_t count, size_t size, const char *what, struct status *status)
+{
+  if (count <= *capacity) return true;
+  size_t larger = *capacity + *capacity / 2;
+  if (larger < count) larger = count;
+  void *old;
+  memcpy(&old, array, sizeof old);
+  void *grown = memory_allocate(larger, size, what, status);
+  if (!grown) return false;
+  if (old) memcpy(grown, old, *capacity * size);
+  free(old);
+  memcpy(array, &grown, sizeof grown);
+  *capacity = larger;
+  return true;
+}
+
+void *memory_map(size_t bytes, const char *what, struct status *status)
+{
+  size_t length = round_up(bytes, huge_page);
+  char *pointer = mmap(NULL, length + huge_page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (pointer == MAP_FAILED) {
+    out_of_memory(what, (double)bytes, status);
+    return NULL;
+  }
+  size_t skip = round_up((uintptr_t)pointer, huge_page) - (uintptr_t)pointer;
+  if (skip) munmap(pointer, skip);
+  if (skip < huge_page) munmap(pointer + skip + length, huge_page - skip);
+  madvise(pointer + skip, length, MADV_HUGEPAGE); /* only advice: small pages give the same results */
+  return pointer + skip;
+}
+
+void memory_unmap(void *pointer, size_t bytes)
+{
+  if (pointer) munmap(pointer, round_up(bytes, huge_page));
+}
+
+double memory_peak_mib(void)
+{
+  struct rusage usage;
+  getrusage(RUSAGE_SELF, &usage);
+  return (double)usage.ru_maxrss / 1024.0;
+}

@@ -1,0 +1,14 @@
+#include "base/status.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+
+bool status_fail(struct status *status, enum delbm_code code, const char *format, ...)
+{
+  va_list arguments;
+  va_start(arguments, format);
+  status->code = code;
+  vsnprintf(status->message, sizeof status->message, format, arguments);
+  va_end(arguments);
+  return false;
+}

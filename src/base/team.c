@@ -1,0 +1,10 @@
+#include "base/team.h"
+
+void team_fail(struct team *team, const struct status *status)
+{
+#pragma omp critical(team_fail)
+  if (!team->failed) {
+    team->first = *status;
+    team->failed = true;
+  }
+}

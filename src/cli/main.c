@@ -1,0 +1,91 @@
+#include "cli/commands.h"
+#include "cli/options.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+struct command {
+  const char *name;
+  int (*run)(int argc, char **argv);
+  const char *purpose;
+};
+
+static const struct command commands[] = {
+    {"run", command_run, "simulate a case"},
+    {"info", command_info, "show a case and the plan of its run"},
+    {"bench", command_bench, "measure speed on this machine"},
+};
+
+enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
+
+static int print_help(void)
+{
+  puts("usage: delbm COMMAND [ARGUMENT]...\n"
+       "       delbm --help | --version\n"
+       "\n"
+       "Flows with discs in them, by the lattice Boltzmann method.\n"
+       "\n"
+       "commands (each has its own --help):");
+  for (size_t k = 0; k < COMMAND_COUNT; k++) printf("  %-8s %s\n", commands[k].name, commands[k].purpose);
+  puts("\n"
+       "The number of threads is that of OMP_NUM_THREADS; it does not change results.\n"
+       "Exit codes: 0 done, 1 run failed (diverged), 2 usage, 3 invalid case, 4 input/output, 130 interrupted.");
+  return DELBM_OK;
+}
+
+static int unknown_word(const char *word)
+{
+  static const char *const own[] = {"--help", "--version"};
+  struct suggestion suggestion = {.given = word};
+  for (size_t k = 0; k < COMMAND_COUNT; k++) suggestion_consider(&suggestion, commands[k].name);
+  for (size_t k = 0; k < sizeof own / sizeof own[0]; k++) suggestion_consider(&suggestion, own[k]);
+  const char *kind = *word == '-' ? "option" : "command";
+  if (!suggestion.nearest) return usage_error(NULL, "unknown %s '%s'", kind, word);
+  return usage_error(NULL, "unknown %s '%s'; did you mean '%s'?", kind, word, suggestion.nearest);
+}
+
+static int dispatch(int argc, char **argv)
+{
+  if (argc < 2) return usage_error(NULL, "no command given");
+  for (size_t k = 0; k < COMMAND_COUNT; k++)
+    if (strcmp(argv[1], commands[k].name) == 0) return commands[k].run(argc - 1, argv + 1);
+  bool version = strcmp(argv[1], "--version") == 0, help = strcmp(argv[1], "--help") == 0;
+  if (!version && !help) return unknown_word(argv[1]);
+  if (argc > 2) return usage_error(NULL, "nothing may follow '%s', but '%s' does", argv[1], argv[2]);
+  if (help) return print_help();
+  puts("delbm " DELBM_VERSION);
+  return DELBM_OK;
+}
+
+/* A standard stream that the caller closed would give its number to the next file opened, and messages would end up in
+ * that file. /dev/null opened the wrong way round takes the place: using it fails as using the closed stream would. */
+static bool hold_standard_streams(void)
+{
+  for (int descriptor = STDIN_FILENO; descriptor <= STDERR_FILENO; descriptor++)
+    if (fcntl(descriptor, F_GETFD) < 0 &&
+        open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY) != descriptor)
+      return false;
+  return true;
+}
+
+/* Results that could not be written to stdout turn success into an error. */
+static int check_stdout(int code)
+{
+  errno = 0;
+  bool written = !ferror(stdout);
+  written = fclose(stdout) == 0 && written;
+  if (written) return code;
+  fprintf(stderr, "delbm: cannot write to standard output: %s\n", strerror(errno ? errno : EIO));
+  return code == DELBM_OK ? DELBM_IO : code;
+}
+
+int main(int argc, char **argv)
+{
+  if (!hold_standard_streams()) return DELBM_IO;
+  signal(SIGPIPE, SIG_IGN); /* a closed pipe is an error like any other: check_stdout reports it */
+  return check_stdout(dispatch(argc, argv));
+}

@@ -1,0 +1,42 @@
+#include "contact/lens.h"
+
+#include <math.h>
+
+/* asin(s) - s sqrt(1 - s^2): the area of the lesser segment of a unit disc that a chord of half-length s cuts off. */
+static double segment(double s)
+{
+  if (s > 0.25) return asin(s) - s * sqrt((1 - s) * (1 + s));
+  /* the integral of 2 s^2 / sqrt(1 - s^2), term by term */
+  double power = 2 * s * s * s, sum = power / 3;
+  for (int n = 1; n < 14; n++) {
+    power *= s * s * (2 * n - 1) / (2 * n);
+    sum += power / (2 * n + 3);
+  }
+  return sum;
+}
+
+/* Area of the segment of a disc beyond a chord at signed distance x from its centre. */
+static double disc_segment(double radius, double half_chord, double x)
+{
+  const double lesser = radius * radius * segment(fmin(1, half_chord / radius));
+  return x >= 0 ? lesser : M_PI * radius * radius - lesser;
+}
+
+struct lens lens_of_discs(double ra, double rb, double d)
+{
+  if (d >= ra + rb) return (struct lens){0, 0};
+  const double least = fmin(ra, rb);
+  if (d <= fabs(ra - rb)) return (struct lens){M_PI * least * least, 0};
+  const double product = (ra + rb - d) * (d + ra - rb) * (d - ra + rb) * (d + ra + rb);
+  const double half_chord = sqrt(product) / (2 * d);
+  const double xa = (d * d + (ra - rb) * (ra + rb)) / (2 * d), xb = d - xa;
+  return (struct lens){disc_segment(ra, half_chord, xa) + disc_segment(rb, half_chord, xb), 2 * half_chord};
+}
+
+struct lens lens_of_wall(double radius, double d)
+{
+  if (d >= radius) return (struct lens){0, 0};
+  if (d <= -radius) return (struct lens){M_PI * radius * radius, 0};
+  const double half_chord = sqrt((radius - d) * (radius + d));
+  return (struct lens){disc_segment(radius, half_chord, d), 2 * half_chord};
+}

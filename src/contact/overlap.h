@@ -1,0 +1,22 @@
+/* The pairs of discs that occupation found near each other, joined from its bands. A pair that meets in several rows or bands
+ * is one contact; its area by cells (23) is their sum, in the order of bands and rows. */
+#ifndef DELBM_CONTACT_OVERLAP_H
+#define DELBM_CONTACT_OVERLAP_H
+
+#include "solid/occupation.h"
+
+struct pair_list {
+  struct near_pair *pairs; /* by a, then b; each once */
+  size_t count, capacity;
+  size_t *next; /* scratch of the join: [discs + 1] */
+  struct near_pair *scratch;
+  size_t scratch_capacity;
+};
+
+bool overlap_create(struct pair_list *list, size_t discs, struct status *status);
+void overlap_destroy(struct pair_list *list);
+
+/* Joins what all bands have found. Called by one thread. */
+bool overlap_join(struct pair_list *list, const struct occupation *occupation, struct status *status);
+
+#endif

@@ -1,0 +1,133 @@
+#include "coupling/exchange.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+bool exchange_create(struct exchange *e, const struct scene *scene, const struct discs *discs, struct status *status)
+{
+  const char *what = "the exchange";
+  *e = (struct exchange){.solve = scene->coupling.solve,
+                         .gravity = {scene->particles.gravity[0], scene->particles.gravity[1]}};
+  if ((e->gathered = memory_allocate(discs->count, sizeof *e->gathered, what, status)) &&
+      (e->response = memory_allocate(discs->count, sizeof *e->response, what, status)) &&
+      (e->surface = memory_allocate(discs->count, sizeof *e->surface, what, status)) &&
+      (e->solve == SOLVE_IMPLICIT || (e->last = memory_allocate(3 * discs->count, sizeof *e->last, what, status))))
+    return true;
+  exchange_destroy(e);
+  return false;
+}
+
+void exchange_destroy(struct exchange *e)
+{
+  free(e->gathered);
+  free(e->response);
+  free(e->surface);
+  free(e->last);
+  *e = (struct exchange){0};
+}
+
+static struct moment_sums gather(gather_run *gather_cells, const struct populations *p,
+                                 const struct sweep_constants *constants, const struct occupation *o, size_t disc)
+{
+  struct moment_sums sums = {0};
+  for (int k = 0; k < o->rows[disc]; k++) {
+    struct run runs[2];
+    int y = 0;
+    const int count = occupation_runs(o, disc, k, runs, &y);
+    for (int r = 0; r < count; r++) {
+      void *a[Q];
+      populations_cells(p, runs[r].x, y, a);
+      gather_cells(a, runs[r].n, constants, o->share + runs[r].cell, runs[r].rx, runs[r].ry, &sums);
+    }
+  }
+  return sums;
+}
+
+void exchange_force(const struct moment_sums *g, double vx, double vy, double omega, double force[3])
+{
+  force[0] = g->px - (g->m0 * vx - g->m1y * omega);
+  force[1] = g->py - (g->m0 * vy + g->m1x * omega);
+  force[2] = g->l - (g->m1x * vy - g->m1y * vx + g->m2 * omega);
+}
+
+/* dV without contacts: A^-1 R. */
+static void respond(struct response *a, const double r[3])
+{
+  a->dvx = a->xx * r[0] + a->xy * r[1] + a->xw * r[2];
+  a->dvy = a->xy * r[0] + a->yy * r[1] + a->yw * r[2];
+  a->domega = a->xw * r[0] + a->yw * r[1] + a->ww * r[2];
+}
+
+/* A^-1 by elimination of omega: A = [[t, 0, -y], [0, t, x], [-y, x, w]]. False unless A is positive definite. */
+static bool invert(const struct moment_sums *g, double mass, double inertia, struct response *inverse)
+{
+  const double t = mass + g->m0, w = inertia + g->m2, x = g->m1x, y = g->m1y;
+  const double schur = w - (x * x + y * y) / t;
+  if (!(t > 0 && schur > 0)) return false;
+  inverse->ww = 1 / schur;
+  inverse->xw = y / t * inverse->ww;
+  inverse->yw = -x / t * inverse->ww;
+  inverse->xx = 1 / t + y / t * inverse->xw;
+  inverse->xy = -x / t * inverse->xw;
+  inverse->yy = 1 / t - x / t * inverse->yw;
+  return true;
+}
+
+static bool solve_implicit(struct exchange *e, const struct discs *d, size_t i, double weight[2])
+{
+  double r[3];
+  exchange_force(&e->gathered[i], d->vx[i], d->vy[i], d->omega[i], r);
+  r[0] += weight[0];
+  r[1] += weight[1];
+  if (!invert(&e->gathered[i], d->mass[i] - d->fluid_mass[i], d->inertia[i] - d->fluid_inertia[i], &e->response[i]))
+    return false;
+  respond(&e->response[i], r);
+  return true;
+}
+
+static void solve_explicit(struct exchange *e, const struct discs *d, size_t i, double weight[2])
+{
+  double now[3], r[3];
+  exchange_force(&e->gathered[i], d->vx[i], d->vy[i], d->omega[i], now);
+  for (int k = 0; k < 3; k++) {
+    double *last = &e->last[3 * i + (size_t)k];
+    r[k] = e->has_last ? 0.5 * (now[k] + *last) : now[k];
+    *last = now[k];
+  }
+  r[0] += weight[0];
+  r[1] += weight[1];
+  e->response[i] = (struct response){.xx = 1 / d->mass[i], .yy = 1 / d->mass[i], .ww = 1 / d->inertia[i]};
+  respond(&e->response[i], r);
+}
+
+void stage_exchange(struct exchange *e, const struct sweep_kernel *kernel, const struct populations *p,
+                    const struct sweep_constants *constants, const struct occupation *o, const struct discs *d,
+                    int64_t step, struct team *team)
+{
+#pragma omp for schedule(dynamic, 8)
+  for (size_t i = 0; i < d->count; i++) {
+    e->gathered[i] = gather(kernel->gather, p, constants, o, i);
+    e->response[i] = (struct response){0};
+    if (d->motion[i] != DISC_FREE) continue;
+    const double buoyant = d->mass[i] - d->fluid_mass[i];
+    double weight[2] = {buoyant * e->gravity[0], buoyant * e->gravity[1]};
+    if (e->solve == SOLVE_EXPLICIT_AVERAGED) {
+      solve_explicit(e, d, i, weight);
+    } else if (!solve_implicit(e, d, i, weight)) {
+      struct status status;
+      status_fail(
+          &status, DELBM_FAILED,
+          "step %lld: disc %zu at (%g, %g) cannot be coupled: it is too light and too small for the cells it covers "
+          "(mass %g, of the fluid it displaces %g, coupled fluid %g); use a larger radius or density",
+          (long long)step, i, d->x[i], d->y[i], d->mass[i], d->fluid_mass[i], e->gathered[i].m0);
+      team_fail(team, &status);
+    }
+  }
+#pragma omp single
+  {
+    e->has_last = true;
+    team->stop = team->failed;
+  }
+}

@@ -1,0 +1,59 @@
+/* Exchange: the momentum that fluid and discs hand each other, solved for the discs' new velocities (stage 2; PHYSICS 2.1).
+ *
+ * A cell hands the fluid B (-2 j + 2 rho v), j with the force of the step: linear in the disc's velocity. Over the cells of a disc, with b = 2 w_p B and lever
+ * arm r, the streamed, not yet collided populations give
+ *   P = sum b j, L = sum b (r x j), M0 = sum b rho, M1 = sum b rho r, M2 = sum b rho |r|^2,
+ * and the change of velocity dV = (dVx, dVy, domega) over the step follows from
+ *   A dV = R + J,  A = diag(m - m_f, m - m_f, I - I_f) + M,  R = weight + (P, L) - M V,
+ *        | M0    0    -M1y |
+ *   M =  | 0     M0    M1x |     J: impulse of all contacts of the step.
+ *        | -M1y  M1x   M2  |
+ * The gather stops short of J: it leaves A^-1 and A^-1 R, and contacts (sim/contact.c), however many sub-steps they take, add
+ * A^-1 J. The sweep then runs with the new velocities and needs no reduction.
+ *
+ * explicit-averaged, for comparison: A = diag(m, m, I), R = weight + mean of the exchange at V over this step and the last; the
+ * sweep sees V.
+ *
+ * Discs are gathered in parallel, each by one thread, its rows from the lowest, its cells from the left: no races, one order. */
+#ifndef DELBM_COUPLING_EXCHANGE_H
+#define DELBM_COUPLING_EXCHANGE_H
+
+#include "base/team.h"
+#include "fluid/sweep.h"
+#include "solid/occupation.h"
+
+/* A^-1, symmetric, and the change of velocity without contacts. */
+struct response {
+  double xx, xy, xw, yy, yw, ww;
+  double dvx, dvy, domega;
+};
+
+/* Velocity of a disc as the fluid sees it in the sweep. */
+struct surface_velocity {
+  double vx, vy, omega;
+};
+
+struct exchange {
+  enum coupling_solve solve;
+  double gravity[2];
+  struct moment_sums *gathered;
+  struct response *response;
+  struct surface_velocity *surface;
+  double *last; /* explicit-averaged: [3 disc + component] exchange of the step before */
+  bool has_last;
+};
+
+bool exchange_create(struct exchange *exchange, const struct scene *scene, const struct discs *discs,
+                     struct status *status);
+void exchange_destroy(struct exchange *exchange);
+
+/* Gathers and solves for all discs; called by all threads of a parallel region or outside of one. With parity 1 the ghosts of
+ * all rows must have been filled. Fails when A cannot be inverted: a disc too light and too small for its cells. */
+void stage_exchange(struct exchange *exchange, const struct sweep_kernel *kernel, const struct populations *populations,
+                    const struct sweep_constants *constants, const struct occupation *occupation,
+                    const struct discs *discs, int64_t step, struct team *team);
+
+/* The exchange (force, torque) on the disc if it moves with the given velocity: (P, L) - M V. */
+void exchange_force(const struct moment_sums *g, double vx, double vy, double omega, double force[3]);
+
+#endif

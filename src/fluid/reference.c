@@ -1,0 +1,111 @@
+#include "fluid/reference.h"
+
+#include "base/memory.h"
+#include "lattice/moments.h"
+
+#include <stdlib.h>
+
+bool reference_create(struct reference *r, int nx, int ny, struct status *status)
+{
+  const size_t count = (size_t)nx * (size_t)ny * Q;
+  *r = (struct reference){.nx = nx, .ny = ny};
+  r->f = memory_allocate(count, sizeof *r->f, "the reference populations", status);
+  if (r->f) r->collided = memory_allocate(count, sizeof *r->collided, "the reference populations", status);
+  if (!r->collided) {
+    reference_destroy(r);
+    return false;
+  }
+  for (size_t k = 0; k < count; k++) r->f[k] = d2q9_weight[k % Q];
+  return true;
+}
+
+void reference_destroy(struct reference *r)
+{
+  free(r->f);
+  free(r->collided);
+  *r = (struct reference){0};
+}
+
+/* One cell: (1), (12), (17), with the force of Guo, Zheng & Shi (2002). `b`, `bv`: cover of the cell. */
+static void collide(const double f[Q], const struct sweep_constants *c, enum coupling_form form, double b,
+                    const double bv[2], double collided[Q])
+{
+  double m[Q], target[Q], force_low[Q], force_high[Q], after[Q];
+  moments_from_populations(f, m);
+  const double rho = m[M_RHO], Fx = rho * c->force[0] + c->uniform[0], Fy = rho * c->force[1] + c->uniform[1];
+  /* equilibria are quadratic in j: their difference over +-F/2 about j + F/2 is exactly the force's moments */
+  moments_equilibrium(rho, m[M_JX] + Fx / 2, m[M_JY] + Fy / 2, target);
+  moments_equilibrium(rho, m[M_JX], m[M_JY], force_low);
+  moments_equilibrium(rho, m[M_JX] + Fx, m[M_JY] + Fy, force_high);
+
+  const double keep = form == FORM_OWEN ? 1 - b : 1;
+  const double nu = keep * c->rates.nu, e = keep * c->rates.e, q = keep * c->rates.q;
+  const double rate[Q] = {0, e, e, 0, q, 0, q, nu, nu};
+  double unforced[Q], force[Q], reflected[Q];
+  for (int k = 0; k < Q; k++) {
+    after[k] = m[k] + rate[k] * (target[k] - m[k]);
+    force_high[k] = (1 - rate[k] / 2) * (force_high[k] - force_low[k]);
+  }
+  /* the odd part in two: collision alone, which the unified form reflects, and then the force, whose halves about the
+   * collision leave -F in q whatever the rate */
+  after[M_JX] = m[M_JX];
+  after[M_JY] = m[M_JY];
+  after[M_QX] = m[M_QX] - q * (m[M_QX] + m[M_JX]);
+  after[M_QY] = m[M_QY] - q * (m[M_QY] + m[M_JY]);
+  force_high[M_QX] = -Fx;
+  force_high[M_QY] = -Fy;
+  populations_from_moments(after, unforced);
+  populations_from_moments(force_high, force);
+
+  const double *from = form == FORM_OWEN ? f : unforced;
+  for (int i = 0; i < Q; i++) {
+    const double ev = d2q9_ex[i] * bv[0] + d2q9_ey[i] * bv[1];
+    const double pushed = 3 * d2q9_weight[i] * (d2q9_ex[i] * Fx + d2q9_ey[i] * Fy); /* by the force, odd part */
+    reflected[i] = b * (from[d2q9_opposite[i]] - from[i] - 2 * pushed) + 6 * d2q9_weight[i] * rho * ev;
+    collided[i] = unforced[i] + reflected[i] + force[i];
+  }
+}
+
+/* The side that rules the link from outside; corners as in boundary.h. */
+static const struct side *ruling_side(const struct side side[SIDE_COUNT], int sx, int sy, int nx, int ny)
+{
+  static const int order[] = {[SIDE_PERIODIC] = 0, [SIDE_OUTLET] = 1, [SIDE_INLET] = 2, [SIDE_WALL] = 3};
+  const struct side *x = sx < 0 ? &side[SIDE_LEFT] : sx >= nx ? &side[SIDE_RIGHT] : NULL;
+  const struct side *y = sy < 0 ? &side[SIDE_BOTTOM] : sy >= ny ? &side[SIDE_TOP] : NULL;
+  if (!x || !y) return x ? x : y;
+  return order[y->type] >= order[x->type] ? y : x;
+}
+
+static int wrap_or_clamp(int s, int n, bool periodic)
+{
+  if (s >= 0 && s < n) return s;
+  return (s < 0) == periodic ? n - 1 : 0;
+}
+
+static double streamed(const struct reference *r, const struct side side[SIDE_COUNT], int x, int y, int i)
+{
+  int sx = x - d2q9_ex[i], sy = y - d2q9_ey[i];
+  const struct side *ruling = ruling_side(side, sx, sy, r->nx, r->ny);
+  if (ruling && (ruling->type == SIDE_WALL || ruling->type == SIDE_INLET)) {
+    const size_t own = ((size_t)y * (size_t)r->nx + (size_t)x) * Q;
+    return r->collided[own + (size_t)d2q9_opposite[i]] + d2q9_wall_momentum(i, ruling->velocity);
+  }
+  sx = wrap_or_clamp(sx, r->nx, side[SIDE_LEFT].type == SIDE_PERIODIC);
+  sy = wrap_or_clamp(sy, r->ny, side[SIDE_BOTTOM].type == SIDE_PERIODIC);
+  return r->collided[((size_t)sy * (size_t)r->nx + (size_t)sx) * Q + (size_t)i];
+}
+
+void reference_step(struct reference *r, const struct side side[SIDE_COUNT], const struct sweep_constants *constants,
+                    const struct reference_cover *cover)
+{
+  const size_t cells = (size_t)r->nx * (size_t)r->ny;
+  for (size_t k = 0; k < cells; k++) {
+    const double b = cover->b ? cover->b[k] : 0;
+    const double bv[2] = {cover->b ? cover->bvx[k] : 0, cover->b ? cover->bvy[k] : 0};
+    collide(r->f + k * Q, constants, cover->form, b, bv, r->collided + k * Q);
+  }
+  for (int y = 0; y < r->ny; y++)
+    for (int x = 0; x < r->nx; x++)
+      for (int i = 0; i < Q; i++)
+        r->f[((size_t)y * (size_t)r->nx + (size_t)x) * Q + (size_t)i] = streamed(r, side, x, y, i);
+}

@@ -1,0 +1,24 @@
+/* The step written as the paper writes it, cell by cell and slowly: two arrays of whole populations, the moment matrix, the
+ * source cell of every population looked up. Every fast kernel is held against it. */
+#ifndef DELBM_FLUID_REFERENCE_H
+#define DELBM_FLUID_REFERENCE_H
+
+#include "fluid/sweep.h"
+
+struct reference {
+  int nx, ny;
+  double *f, *collided; /* [(y * nx + x) * Q + i] */
+};
+
+/* Per cell B and B v, as row_cover but for the whole box; NULL arrays for fluid alone. */
+struct reference_cover {
+  enum coupling_form form;
+  const double *b, *bvx, *bvy;
+};
+
+bool reference_create(struct reference *reference, int nx, int ny, struct status *status);
+void reference_destroy(struct reference *reference);
+void reference_step(struct reference *reference, const struct side side[SIDE_COUNT],
+                    const struct sweep_constants *constants, const struct reference_cover *cover);
+
+#endif

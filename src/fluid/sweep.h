@@ -1,0 +1,52 @@
+/* The sweep: collide, immersed moving boundary and stream of one row at a time, in place (see populations.h).
+ *
+ * A kernel is one body (sweep_kernel.c) compiled per precision and instruction set; literal arguments make its forms: fluid
+ * alone or with discs (unified or owen), each with or without a body force. sweep_find chooses one at start-up. */
+#ifndef DELBM_FLUID_SWEEP_H
+#define DELBM_FLUID_SWEEP_H
+
+#include "fluid/populations.h"
+
+/* What is the same for every cell of a step. */
+struct sweep_constants {
+  struct rates rates;
+  double force[2];   /* body force per unit mass */
+  double uniform[2]; /* and per unit volume (zero_flux) */
+};
+
+/* What covers the cells of a row, in the precision of the populations: b[x] = B (19), and B times the velocity of the
+ * solid, the sum over owners of w_p B v_p. Zero where no disc is. */
+struct row_cover {
+  void *b, *bvx, *bvy;
+};
+
+/* Updates n cells whose populations are read from a[i][0..n-1]. `cover` is NULL for fluid alone. With a force, sum[] takes
+ * the momentum of the updated cells; without, it is left alone. */
+typedef void sweep_row(void *const a[Q], int n, const struct sweep_constants *constants, const struct row_cover *cover,
+                       double sum[2]);
+
+/* Sums over the cells of a disc (PHYSICS 2.1): with b = 2 share, r the lever arm and j after the force of the step, sum b j,
+ * b (r x j), b rho, b rho r and b rho |r|^2. */
+struct moment_sums {
+  double px, py, l, m0, m1x, m1y, m2;
+};
+
+/* Adds n cells, read from a[i][0..n-1], the first of them at (rx, ry) from the disc's centre. */
+typedef void gather_run(void *const a[Q], int n, const struct sweep_constants *constants, const double *share,
+                        double rx, double ry, struct moment_sums *sums);
+
+struct sweep_kernel {
+  const char *name; /* for example avx512-double */
+  enum precision precision;
+  sweep_row *fluid[2];    /* [with a force?] */
+  sweep_row *discs[2][2]; /* [enum coupling_form][with a force?] */
+  gather_run *gather;
+};
+
+/* The compiled-in kernels, best first, and whether this machine runs it; NULL past the last. */
+const struct sweep_kernel *sweep_kernel_at(size_t index, bool *runs_here);
+
+/* The kernel of that name, or with NULL the best that this machine runs, of the wanted precision. */
+const struct sweep_kernel *sweep_find(const char *name, enum precision precision, struct status *status);
+
+#endif

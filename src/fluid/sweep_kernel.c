@@ -1,0 +1,136 @@
+/* The collide-stream kernel: one body, compiled once per precision (REAL) and instruction set (VARIANT).
+ *
+ * The paper's nine moments reduce, in a lattice of four opposite pairs, to sums and differences of those pairs:
+ *
+ *   s1 = f1+f3   s2 = f2+f4   s5 = f5+f7   s6 = f6+f8        even: rho, e, eps, pxx, pxy
+ *   d1 = f1-f3   d2 = f2-f4   d5 = f5-f7   d6 = f6-f8        odd:  jx, qx, jy, qy
+ *
+ *   S = s1+s2, D = s5+s6, pxx = s1-s2, pxy = s5-s6, tx = d5-d6 = (2 jx + qx)/3, ty = d5+d6 = (2 jy + qy)/3.
+ *
+ * e and eps relax at one rate, so any combination of them does: S to 4 rho/9 + u.j/3 and D to rho/9 + u.j/3. tx relaxes
+ * to jx/3 at the rate of qx. What is added to each population is built from the changes of S, D, pxx, pxy, jx, tx, jy, ty;
+ * f0 takes what S and D give up, so that mass is kept to round-off.
+ *
+ * Force: second order in time (Guo, Zheng & Shi 2002) with F = rho g + uniform; even
+ * equilibria see j + F/2, and odd moments, where the two half forces cancel, gain F and F/3.
+ *
+ * Immersed boundary: bounce-back changes the sign of odd moments only, and 6 w rho e.v adds 2 rho v to j and 2 rho v/3 to t.
+ *   owen    (12)-(13): rates times (1 - B), reflection of the moments before collision;
+ *   unified (17)-(18): full rates, reflection of the moments after collision.
+ * Either way j gains exactly 2 (rho B v - B (j + F)): what is reflected has felt the force, so that fluid inside a disc keeps
+ * the disc's velocity exactly, (j + F/2)/rho = v. */
+#include "fluid/sweep.h"
+
+#define PASTE3(a, b, c) a##_##b##_##c
+#define NAME3(a, b, c)  PASTE3(a, b, c)
+#define KERNEL(part)    NAME3(part, VARIANT, REAL)
+
+static inline __attribute__((always_inline)) void collide_stream(void *const a[Q], const int n,
+                                                                 const struct sweep_constants *constants,
+                                                                 const struct row_cover *cover, double sum[2],
+                                                                 const bool discs, const bool owen, const bool force)
+{
+  REAL *restrict a0 = a[0], *restrict a1 = a[1], *restrict a2 = a[2], *restrict a3 = a[3], *restrict a4 = a[4];
+  REAL *restrict a5 = a[5], *restrict a6 = a[6], *restrict a7 = a[7], *restrict a8 = a[8];
+  const REAL *restrict cover_b = discs ? cover->b : NULL;
+  const REAL *restrict cover_bvx = discs ? cover->bvx : NULL;
+  const REAL *restrict cover_bvy = discs ? cover->bvy : NULL;
+  const REAL rate_nu = (REAL)constants->rates.nu, rate_e = (REAL)constants->rates.e, rate_q = (REAL)constants->rates.q;
+  const REAL gx = (REAL)constants->force[0], gy = (REAL)constants->force[1];
+  const REAL zx = (REAL)constants->uniform[0], zy = (REAL)constants->uniform[1];
+  const REAL one = 1, two = 2, half = (REAL)0.5, quarter = (REAL)0.25;
+  const REAL third = (REAL)(1.0 / 3), ninth = (REAL)(1.0 / 9), four_ninths = (REAL)(4.0 / 9);
+  REAL sum_x = 0, sum_y = 0;
+
+#pragma omp simd reduction(+ : sum_x, sum_y)
+  for (int x = 0; x < n; x++) {
+    const REAL f0 = a0[x], f1 = a1[x], f2 = a2[x], f3 = a3[x], f4 = a4[x];
+    const REAL f5 = a5[x], f6 = a6[x], f7 = a7[x], f8 = a8[x];
+    const REAL s1 = f1 + f3, d1 = f1 - f3, s2 = f2 + f4, d2 = f2 - f4;
+    const REAL s5 = f5 + f7, d5 = f5 - f7, s6 = f6 + f8, d6 = f6 - f8;
+    const REAL S = s1 + s2, D = s5 + s6, pxx = s1 - s2, pxy = s5 - s6;
+    const REAL tx = d5 - d6, ty = d5 + d6, jx = d1 + tx, jy = d2 + ty;
+    const REAL delta_rho = f0 + S + D, rho = one + delta_rho, inverse = one / rho;
+
+    const REAL Fx = force ? rho * gx + zx : 0, Fy = force ? rho * gy + zy : 0;
+    const REAL Jx = force ? jx + half * Fx : jx, Jy = force ? jy + half * Fy : jy;
+    const REAL ux = Jx * inverse, uy = Jy * inverse;
+    const REAL uj = third * (Jx * ux + Jy * uy);
+
+    const REAL b = discs ? cover_b[x] : 0;
+    const REAL keep = discs && owen ? one - b : one;
+    const REAL r_nu = keep * rate_nu, r_e = keep * rate_e, r_q = keep * rate_q;
+
+    REAL delta_S = r_e * (four_ninths * delta_rho + uj - S);
+    REAL delta_D = r_e * (ninth * delta_rho + uj - D);
+    REAL delta_pxx = r_nu * (Jx * ux - Jy * uy - pxx);
+    REAL delta_pxy = r_nu * (Jx * uy - pxy);
+    REAL delta_tx = r_q * (third * jx - tx);
+    REAL delta_ty = r_q * (third * jy - ty);
+    REAL delta_jx = 0, delta_jy = 0;
+
+    if (discs) {
+      const REAL rvx = rho * cover_bvx[x], rvy = rho * cover_bvy[x];
+      delta_jx = two * (rvx - b * (jx + Fx));
+      delta_jy = two * (rvy - b * (jy + Fy));
+      delta_tx += two * (third * rvx - b * (third * Fx + (owen ? tx : tx + delta_tx)));
+      delta_ty += two * (third * rvy - b * (third * Fy + (owen ? ty : ty + delta_ty)));
+    }
+    if (force) {
+      const REAL Fu = third * (two - r_e) * (Fx * ux + Fy * uy);
+      delta_S += Fu;
+      delta_D += Fu;
+      delta_pxx += (two - r_nu) * (Fx * ux - Fy * uy);
+      delta_pxy += (one - half * r_nu) * (Fx * uy + Fy * ux);
+      delta_jx += Fx;
+      delta_jy += Fy;
+      delta_tx += third * Fx;
+      delta_ty += third * Fy;
+      sum_x += jx + delta_jx;
+      sum_y += jy + delta_jy;
+    }
+
+    const REAL axis_x = quarter * (delta_S + delta_pxx), axis_y = quarter * (delta_S - delta_pxx);
+    const REAL diagonal_up = quarter * (delta_D + delta_pxy), diagonal_down = quarter * (delta_D - delta_pxy);
+    const REAL odd_x = half * (delta_jx - delta_tx), odd_y = half * (delta_jy - delta_ty);
+    const REAL odd_up = quarter * (delta_tx + delta_ty), odd_down = quarter * (delta_ty - delta_tx);
+
+    /* f_i* goes to the slot that f_opposite(i) was read from. */
+    a0[x] = f0 - delta_S - delta_D;
+    a3[x] = f1 + axis_x + odd_x;
+    a1[x] = f3 + axis_x - odd_x;
+    a4[x] = f2 + axis_y + odd_y;
+    a2[x] = f4 + axis_y - odd_y;
+    a7[x] = f5 + diagonal_up + odd_up;
+    a5[x] = f7 + diagonal_up - odd_up;
+    a8[x] = f6 + diagonal_down + odd_down;
+    a6[x] = f8 + diagonal_down - odd_down;
+  }
+  if (force) {
+    sum[0] = (double)sum_x;
+    sum[1] = (double)sum_y;
+  }
+}
+
+#define ROW(name, discs, owen, force)                                                                                  \
+  static void name(void *const a[Q], int n, const struct sweep_constants *constants, const struct row_cover *cover,    \
+                   double sum[2])                                                                                      \
+  {                                                                                                                    \
+    collide_stream(a, n, constants, cover, sum, discs, owen, force);                                                   \
+  }
+ROW(sweep_fluid, false, false, false)
+ROW(sweep_fluid_force, false, false, true)
+ROW(sweep_discs_unified, true, false, false)
+ROW(sweep_discs_unified_force, true, false, true)
+ROW(sweep_discs_owen, true, true, false)
+ROW(sweep_discs_owen_force, true, true, true)
+
+extern gather_run KERNEL(gather_run);
+extern const struct sweep_kernel KERNEL(sweep_kernel);
+const struct sweep_kernel KERNEL(sweep_kernel) = {
+    .name = VARIANT_NAME,
+    .precision = sizeof(REAL) == sizeof(double) ? PRECISION_DOUBLE : PRECISION_SINGLE,
+    .fluid = {sweep_fluid, sweep_fluid_force},
+    .discs = {[FORM_UNIFIED] = {sweep_discs_unified, sweep_discs_unified_force},
+              [FORM_OWEN] = {sweep_discs_owen, sweep_discs_owen_force}},
+    .gather = KERNEL(gather_run)};

@@ -1,0 +1,160 @@
+#include "output/csv.h"
+
+#include "base/memory.h"
+#include "output/file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* The longest "%.17g" is -2.2250738585072014e-308 (24 characters), the longest integer has 20; each is followed by a
+ * separator. */
+enum { NUMBER_LENGTH = 25, INTEGER_LENGTH = 21 };
+
+struct column {
+  const char *name;
+  size_t member; /* offset of the array in struct discs */
+};
+
+static const struct column columns[] = {
+    {"x", offsetof(struct discs, x)},
+    {"y", offsetof(struct discs, y)},
+    {"vx", offsetof(struct discs, vx)},
+    {"vy", offsetof(struct discs, vy)},
+    {"omega", offsetof(struct discs, omega)},
+    {"angle", offsetof(struct discs, angle)},
+    {"fx", offsetof(struct discs, fx)},
+    {"fy", offsetof(struct discs, fy)},
+    {"torque", offsetof(struct discs, torque)},
+    {"contact_fx", offsetof(struct discs, contact_fx)},
+    {"contact_fy", offsetof(struct discs, contact_fy)},
+    {"contact_torque", offsetof(struct discs, contact_torque)},
+};
+
+enum {
+  COLUMN_COUNT = sizeof columns / sizeof columns[0],
+  ROW_LENGTH = 2 * INTEGER_LENGTH + COLUMN_COUNT * NUMBER_LENGTH + 1 /* final zero of snprintf */
+};
+
+struct csv {
+  int descriptor;
+  char *path;
+  off_t size;    /* of the file */
+  char *text;    /* the snapshot being put together */
+  size_t length; /* of it */
+  size_t capacity;
+};
+
+static double column_value(const struct column *column, const struct discs *discs, size_t disc)
+{
+  const double *values;
+  memcpy(&values, (const char *)discs + column->member, sizeof values);
+  return values[disc];
+}
+
+/* Writes the text and empties it. When that fails, what arrived of it is cut off again: a snapshot is whole or
+ * absent. */
+static bool write_text(struct csv *csv, struct status *status)
+{
+  size_t done = 0;
+  while (done < csv->length) {
+    ssize_t written = write(csv->descriptor, csv->text + done, csv->length - done);
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) {
+      int error = errno;
+      bool whole = done == 0 || ftruncate(csv->descriptor, csv->size) == 0;
+      return status_fail(status, DELBM_IO, "cannot write %s: %s%s", csv->path, strerror(error),
+                         whole ? "" : "; its last row is cut off");
+    }
+    done += (size_t)written;
+  }
+  csv->size += (off_t)csv->length;
+  csv->length = 0;
+  return true;
+}
+
+static bool reserve_row(struct csv *csv, struct status *status)
+{
+  return memory_grow(&csv->text, &csv->capacity, csv->length + ROW_LENGTH, 1, "a snapshot of the discs", status);
+}
+
+static bool write_header(struct csv *csv, struct status *status)
+{
+  if (!reserve_row(csv, status)) return false;
+  csv->length = (size_t)snprintf(csv->text, ROW_LENGTH, "step,id");
+  for (const struct column *column = columns; column < columns + COLUMN_COUNT; column++)
+    csv->length += (size_t)snprintf(csv->text + csv->length, ROW_LENGTH - csv->length, ",%s", column->name);
+  csv->text[csv->length++] = '\n';
+  return write_text(csv, status);
+}
+
+bool csv_open(struct csv **csv, const char *path, struct status *status)
+{
+  *csv = memory_allocate(1, sizeof **csv, "the table of discs", status);
+  if (!*csv) return false;
+  (*csv)->descriptor = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0666);
+  if ((*csv)->descriptor < 0) {
+    file_fail(status, "create", path, errno);
+    free(*csv);
+    *csv = NULL;
+    return false;
+  }
+  (*csv)->path = strdup(path);
+  bool opened = (*csv)->path ? write_header(*csv, status) : file_fail(status, "create", path, ENOMEM);
+  struct status ignored;
+  if (!opened) csv_close(csv, &ignored);
+  return opened;
+}
+
+/* Most discs touch nothing, so that a plain 0 is by far the most frequent number. */
+static size_t format_number(char *text, double value)
+{
+  if (value == 0 && !signbit(value)) {
+    memcpy(text, "0", 2);
+    return 1;
+  }
+  return (size_t)snprintf(text, NUMBER_LENGTH, "%.17g", value);
+}
+
+static bool append_row(struct csv *csv, int64_t step, const struct discs *discs, size_t disc, struct status *status)
+{
+  char *text = csv->text + csv->length;
+  text += snprintf(text, 2 * INTEGER_LENGTH, "%" PRId64 ",%zu", step, disc);
+  for (const struct column *column = columns; column < columns + COLUMN_COUNT; column++) {
+    double value = column_value(column, discs, disc);
+    if (!isfinite(value))
+      return status_fail(status, DELBM_FAILED, "step %" PRId64 ", disc %zu: %s is %g", step, disc, column->name, value);
+    *text++ = ',';
+    text += format_number(text, value);
+  }
+  *text++ = '\n';
+  csv->length = (size_t)(text - csv->text);
+  return true;
+}
+
+bool csv_write(struct csv *csv, int64_t step, const struct discs *discs, struct status *status)
+{
+  csv->length = 0;
+  for (size_t disc = 0; disc < discs->count; disc++) {
+    if (!reserve_row(csv, status)) return false;
+    if (!append_row(csv, step, discs, disc, status)) return false;
+  }
+  return write_text(csv, status);
+}
+
+bool csv_close(struct csv **csv, struct status *status)
+{
+  if (!*csv) return true;
+  bool closed = close((*csv)->descriptor) == 0 || file_fail(status, "close", (*csv)->path, errno);
+  free((*csv)->text);
+  free((*csv)->path);
+  free(*csv);
+  *csv = NULL;
+  return closed;
+}

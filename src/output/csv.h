@@ -1,0 +1,19 @@
+/* particles.csv: one row per disc and snapshot, numbers with 17 digits, so that they read back as they were. */
+#ifndef DELBM_OUTPUT_CSV_H
+#define DELBM_OUTPUT_CSV_H
+
+#include "solid/discs.h"
+
+struct csv;
+
+/* Starts the file anew with its header. */
+bool csv_open(struct csv **csv, const char *path, struct status *status);
+
+/* Appends the discs at `step`, in one write: what was written stays when the program ends early. A value that is not
+ * finite is refused (DELBM_FAILED) with its step, disc and column, and nothing of that snapshot is written. */
+bool csv_write(struct csv *csv, int64_t step, const struct discs *discs, struct status *status);
+
+/* Closes the file and sets *csv to NULL; *csv may be NULL. */
+bool csv_close(struct csv **csv, struct status *status);
+
+#endif

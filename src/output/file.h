@@ -1,0 +1,34 @@
+/* Files and folders of a run: every failure is DELBM_IO with the path and the system's reason. */
+#ifndef DELBM_OUTPUT_FILE_H
+#define DELBM_OUTPUT_FILE_H
+
+#include "base/status.h"
+
+#include <stdio.h>
+
+/* A file written beside its final place and moved there once complete, so that no reader ever sees half of it. */
+struct replacement {
+  FILE *stream;
+  char *path;
+  char *temporary;
+};
+
+/* "cannot VERB PATH: reason"; returns false. An error of 0 is one that the system did not name. */
+bool file_fail(struct status *status, const char *verb, const char *path, int error);
+
+/* directory/name, released by free(); NULL when memory runs out. */
+char *file_join(const char *directory, const char *name, struct status *status);
+
+/* Makes a folder and those above it. One that exists is fine. */
+bool file_make_directory(const char *path, struct status *status);
+
+/* Removes a file. One that does not exist is fine. */
+bool file_remove(const char *path, struct status *status);
+
+/* Between begin and commit the caller writes to file->stream, whose error flag commit checks. Either of commit and
+ * abandon ends the replacement; after a failed commit the file that was there before still stands. */
+bool replacement_begin(struct replacement *file, const char *path, struct status *status);
+bool replacement_commit(struct replacement *file, struct status *status);
+void replacement_abandon(struct replacement *file);
+
+#endif

@@ -1,0 +1,43 @@
+/* frames/NNNNNNNN.png: the flow as colour and the discs on top, y upwards. The same input gives the same bytes. */
+#ifndef DELBM_OUTPUT_PICTURE_H
+#define DELBM_OUTPUT_PICTURE_H
+
+#include "solid/discs.h"
+
+/* Colours of the discs, as 0xRRGGBB. The dark quadrants show how far a disc has turned. */
+enum picture_colour { PICTURE_DISC = 0xf0f1f4, PICTURE_MARK = 0x868d9b, PICTURE_OUTLINE = 0x14161c };
+
+struct picture {
+  int size[2];           /* cells, x then y */
+  const double *ux, *uy; /* velocity of the cells, row by row from the bottom */
+  bool periodic[2];      /* discs across such a side appear on both */
+  const struct discs *discs;
+  enum frame_quantity quantity;
+  double maximum; /* value at the end of the colour scale; 0: the largest of this picture */
+};
+
+/* Pixels on a domain of `size` cells: one a cell, unless the longer side would then have more than PICTURE_LARGEST
+ * pixels, where pixels average squares of `block` cells, or fewer than PICTURE_SMALLEST, where a cell has `zoom` pixels
+ * a side. */
+enum { PICTURE_LARGEST = 1600, PICTURE_SMALLEST = 400 };
+struct picture_scale {
+  int block;
+  int zoom;
+  int width, height; /* pixels */
+};
+struct picture_scale picture_scale(const int size[2]);
+
+/* Draws and writes one picture. A build without libpng refuses. */
+#ifdef DELBM_PNG
+enum { PICTURE_SUPPORTED = 1 };
+bool picture_write(const struct picture *picture, const char *path, struct status *status);
+#else
+enum { PICTURE_SUPPORTED = 0 };
+static inline bool picture_write(const struct picture *picture, const char *path, struct status *status)
+{
+  (void)picture;
+  return status_fail(status, DELBM_FAILED, "cannot write %s: this build has no libpng", path);
+}
+#endif
+
+#endif

@@ -1,0 +1,188 @@
+#include "output/summary.h"
+
+#include "base/memory.h"
+#include "output/file.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+enum figure_kind { FIGURE_TEXT, FIGURE_INTEGER, FIGURE_REAL };
+
+/* One entry of the summary. A NULL text is left out. */
+struct figure {
+  const char *name;
+  enum figure_kind kind;
+  bool stage;     /* belongs to "stages" of run.json */
+  bool json_only; /* not in the line: may hold spaces */
+  const char *text;
+  int64_t integer;
+  double real;
+};
+
+enum { FIGURES_MAX = 16 + STAGE_COUNT };
+
+struct figures {
+  size_t count;
+  struct figure items[FIGURES_MAX];
+};
+
+static const char *outcome_name(enum outcome outcome)
+{
+  static const char *const names[] = {"done", "diverged", "interrupted", "failed"};
+  return names[outcome];
+}
+
+static struct figure *add(struct figures *figures, const char *name, enum figure_kind kind)
+{
+  struct figure *figure = &figures->items[figures->count++];
+  *figure = (struct figure){.name = name, .kind = kind};
+  return figure;
+}
+
+static struct figure *add_text(struct figures *figures, const char *name, const char *text)
+{
+  struct figure *figure = add(figures, name, FIGURE_TEXT);
+  figure->text = text;
+  return figure;
+}
+
+static void add_integer(struct figures *figures, const char *name, int64_t integer)
+{
+  add(figures, name, FIGURE_INTEGER)->integer = integer;
+}
+
+static struct figure *add_real(struct figures *figures, const char *name, double real)
+{
+  struct figure *figure = add(figures, name, FIGURE_REAL);
+  figure->real = real;
+  return figure;
+}
+
+static double mlups(const struct summary *summary)
+{
+  const int *size = summary->scene->domain.size;
+  double updates = (double)size[0] * size[1] * (double)summary->steps;
+  return summary->seconds > 0 ? updates / summary->seconds * 1e-6 : 0;
+}
+
+static struct figures figures_of(const struct summary *summary)
+{
+  const struct simulation_report *report = &summary->report;
+  bool single = summary->scene->fluid.precision == PRECISION_SINGLE;
+  struct figures figures = {0};
+  add_text(&figures, "status", outcome_name(summary->outcome));
+  add_text(&figures, "message", summary->message)->json_only = true;
+  add_integer(&figures, "steps", summary->steps);
+  add_real(&figures, "seconds", summary->seconds);
+  add_real(&figures, "mlups", mlups(summary));
+  add_integer(&figures, "threads", report->threads);
+  add_text(&figures, "kernel", report->kernel);
+  add_text(&figures, "precision", single ? "single" : "double");
+  for (int stage = 0; stage < STAGE_COUNT; stage++)
+    add_real(&figures, stage_name((enum stage)stage), report->times.seconds[stage])->stage = true;
+  add_real(&figures, "mass_drift", report->mass_drift);
+  add_real(&figures, "momentum_drift", report->momentum_drift);
+  add_real(&figures, "max_mach", report->max_mach);
+  add_integer(&figures, "max_substeps", report->max_substeps);
+  add_real(&figures, "peak_rss_mib", memory_peak_mib());
+  add_text(&figures, "version", DELBM_VERSION)->json_only = true;
+  add_text(&figures, "title", summary->scene->title)->json_only = true;
+  return figures;
+}
+
+/* Length of the UTF-8 sequence that starts here, 0 when the bytes are not UTF-8. */
+static size_t utf8_length(const unsigned char *text)
+{
+  if (text[0] < 0x80) return 1;
+  size_t length = text[0] >= 0xf0 ? 4 : text[0] >= 0xe0 ? 3 : 2;
+  if (text[0] < 0xc2 || text[0] > 0xf4) return 0;
+  for (size_t k = 1; k < length; k++)
+    if ((text[k] & 0xc0) != 0x80) return 0;
+  bool overlong = (text[0] == 0xe0 && text[1] < 0xa0) || (text[0] == 0xf0 && text[1] < 0x90);
+  bool surrogate = text[0] == 0xed && text[1] >= 0xa0;
+  bool beyond = text[0] == 0xf4 && text[1] >= 0x90;
+  return overlong || surrogate || beyond ? 0 : length;
+}
+
+/* A JSON string. A byte that is not UTF-8 (a path may hold any) becomes the replacement character. */
+static void json_text(const char *text, FILE *stream)
+{
+  fputc('"', stream);
+  for (const unsigned char *c = (const unsigned char *)text; *c;) {
+    size_t length = utf8_length(c);
+    if (length == 0)
+      fputs("\\ufffd", stream);
+    else if (*c < 0x20 || *c == 0x7f)
+      fprintf(stream, "\\u%04x", *c);
+    else {
+      if (*c == '"' || *c == '\\') fputc('\\', stream);
+      fwrite(c, 1, length, stream);
+    }
+    c += length ? length : 1;
+  }
+  fputc('"', stream);
+}
+
+static void json_figure(const struct figure *figure, FILE *stream)
+{
+  fprintf(stream, "\"%s\": ", figure->name);
+  if (figure->kind == FIGURE_TEXT)
+    json_text(figure->text, stream);
+  else if (figure->kind == FIGURE_INTEGER)
+    fprintf(stream, "%" PRId64, figure->integer);
+  else if (isfinite(figure->real))
+    fprintf(stream, "%.17g", figure->real);
+  else
+    fputs("null", stream);
+}
+
+static bool is_absent(const struct figure *figure)
+{
+  return figure->kind == FIGURE_TEXT && !figure->text;
+}
+
+static void json_figures(const struct figures *figures, FILE *stream)
+{
+  const char *separator = "{\n";
+  bool in_stages = false;
+  for (const struct figure *figure = figures->items; figure < figures->items + figures->count; figure++) {
+    if (is_absent(figure)) continue;
+    if (in_stages && !figure->stage) fputs("\n  }", stream);
+    fputs(separator, stream);
+    if (!in_stages && figure->stage) fputs("  \"stages\": {\n", stream);
+    in_stages = figure->stage;
+    fputs(in_stages ? "    " : "  ", stream);
+    json_figure(figure, stream);
+    separator = ",\n";
+  }
+  fputs("\n}\n", stream);
+}
+
+bool summary_write(const struct summary *summary, const char *path, struct status *status)
+{
+  struct figures figures = figures_of(summary);
+  struct replacement file;
+  if (!replacement_begin(&file, path, status)) return false;
+  json_figures(&figures, file.stream);
+  return replacement_commit(&file, status);
+}
+
+void summary_print(const struct summary *summary, FILE *stream)
+{
+  struct figures figures = figures_of(summary);
+  fputs("delbm:", stream);
+  for (const struct figure *figure = figures.items; figure < figures.items + figures.count; figure++) {
+    if (figure->json_only || is_absent(figure)) continue;
+    fprintf(stream, " %s=", figure->name);
+    if (figure->kind == FIGURE_TEXT)
+      fputs(figure->text, stream);
+    else if (figure->kind == FIGURE_INTEGER)
+      fprintf(stream, "%" PRId64, figure->integer);
+    else if (isfinite(figure->real))
+      fprintf(stream, "%.6g", figure->real);
+    else
+      fputc('-', stream);
+  }
+  fputc('\n', stream);
+}

@@ -1,0 +1,24 @@
+/* How a run ended, in figures: run.json, and one line for grep. */
+#ifndef DELBM_OUTPUT_SUMMARY_H
+#define DELBM_OUTPUT_SUMMARY_H
+
+#include "sim/simulation.h"
+
+#include <stdio.h>
+
+enum outcome { OUTCOME_DONE, OUTCOME_DIVERGED, OUTCOME_INTERRUPTED, OUTCOME_FAILED };
+
+struct summary {
+  enum outcome outcome;
+  const char *message; /* why the run is not done; NULL when it is */
+  const struct scene *scene;
+  int64_t steps;
+  double seconds;                  /* wall time of the steps and of what was written */
+  struct simulation_report report; /* with STAGE_OUTPUT filled in */
+};
+
+/* Both write the figures of the summary under the same names; one that is not finite is null, or - in the line. */
+bool summary_write(const struct summary *summary, const char *path, struct status *status);
+void summary_print(const struct summary *summary, FILE *stream);
+
+#endif

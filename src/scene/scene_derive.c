@@ -1,0 +1,60 @@
+#include "scene/scene_derive.h"
+
+static const double default_magic = 3.0 / 16.0;
+static const double default_density = 1.0;
+
+static void derive_rates(struct draft *draft)
+{
+  double viscosity = draft->scene.fluid.viscosity;
+  enum collision collision = draft->scene.fluid.collision;
+  struct rates *rates = &draft->scene.fluid.rates;
+  rates->nu = rate_from_viscosity(viscosity);
+  if (collision != COLLISION_MRT) rates->e = rates->nu;
+  if (collision == COLLISION_BGK) rates->q = rates->nu;
+  if (collision == COLLISION_TRT && draft->magic == 0) draft->magic = default_magic;
+  if (draft->magic > 0) rates->q = rate_from_magic(draft->magic, viscosity);
+}
+
+static void derive_densities(struct draft *draft)
+{
+  double density = draft->density > 0 ? draft->density : default_density;
+  struct scene *scene = &draft->scene;
+  for (size_t i = 0; i < scene->particles.listed; i++) {
+    if (scene->particles.discs[i].density == 0) scene->particles.discs[i].density = density;
+  }
+  if (scene->particles.fill.present && scene->particles.fill.density == 0) scene->particles.fill.density = density;
+}
+
+static void derive_fill(struct draft *draft)
+{
+  struct fill_spec *fill = &draft->scene.particles.fill;
+  if (!fill->present) return;
+  draft_fill_region(draft, fill->region);
+  if (!draft_gives(draft, "particles.fill.jitter")) fill->jitter = (fill->spacing - 2 * fill->radius) / 4;
+}
+
+static bool has_free_discs(const struct scene *scene)
+{
+  if (scene->particles.fill.present) return true;
+  for (size_t i = 0; i < scene->particles.listed; i++) {
+    if (scene->particles.discs[i].motion == DISC_FREE) return true;
+  }
+  return false;
+}
+
+static void derive_zero_flux(struct draft *draft)
+{
+  struct scene *scene = &draft->scene;
+  if (draft_gives(draft, "fluid.zero_flux")) return;
+  bool closed = scene_is_closed(scene, 0) || scene_is_closed(scene, 1);
+  bool heavy = scene->particles.gravity[0] != 0 || scene->particles.gravity[1] != 0;
+  scene->fluid.zero_flux = closed && heavy && has_free_discs(scene);
+}
+
+void scene_derive(struct draft *draft)
+{
+  derive_rates(draft);
+  derive_densities(draft);
+  derive_fill(draft);
+  derive_zero_flux(draft);
+}

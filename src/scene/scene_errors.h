@@ -1,0 +1,33 @@
+/* The errors found in a case: one line of text each, in the order found. */
+#ifndef DELBM_SCENE_SCENE_ERRORS_H
+#define DELBM_SCENE_SCENE_ERRORS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
+
+enum { SCENE_ERRORS_KEPT = 1000 };
+
+/* All zero is an empty list. */
+struct scene_errors {
+  char **lines; /* [count] */
+  size_t count;
+  size_t capacity;
+  size_t dropped; /* further errors, past SCENE_ERRORS_KEPT or for want of memory, of which only the number is known */
+};
+
+void scene_errors_add(struct scene_errors *errors, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* True once further errors are only counted. */
+bool scene_errors_full(const struct scene_errors *errors);
+
+/* Kept and dropped ones. */
+size_t scene_errors_total(const struct scene_errors *errors);
+
+/* One error a line, and a last line with the number of those dropped. */
+void scene_errors_print(const struct scene_errors *errors, FILE *file);
+
+/* Releases the lines and leaves an empty list. */
+void scene_errors_clear(struct scene_errors *errors);
+
+#endif

@@ -1,0 +1,19 @@
+/* Case files: YAML to a scene. */
+#ifndef DELBM_SCENE_SCENE_FILE_H
+#define DELBM_SCENE_SCENE_FILE_H
+
+#include "scene/scene.h"
+#include "scene/scene_errors.h"
+
+enum { SCENE_FILE_MIB = 64 }; /* largest case file taken */
+
+/* Reads the case at `path`, a case file or a folder that holds case.yaml, with overrides "dotted.key=value" on top,
+ * fills in the defaults and draws the discs of particles.fill. On success the scene is to be released by scene_clear.
+ * False if
+ *   - the file cannot be read (DELBM_IO),
+ *   - the case is not valid (DELBM_INVALID): `errors` then holds every error found, and *status their number, or
+ *   - memory runs out (DELBM_FAILED). */
+bool scene_read(struct scene *scene, const char *path, char *const set[], size_t set_count, struct scene_errors *errors,
+                struct status *status);
+
+#endif

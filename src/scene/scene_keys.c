@@ -1,0 +1,155 @@
+#include "scene/scene_keys.h"
+
+#include "base/words.h"
+#include "scene/scene_draft.h"
+#include "scene/scene_value.h"
+
+#include <stdint.h>
+#include <string.h>
+
+_Static_assert(sizeof(enum side_type) == sizeof(int), "a choice is stored as an int");
+_Static_assert(SIDE_WALL == 0 && SIDE_OUTLET == 3, "order of wall|periodic|inlet|outlet");
+_Static_assert(COLLISION_BGK == 0 && COLLISION_MRT == 2, "order of bgk|trt|mrt");
+
+static const struct key table[] = {
+#define KEY(path, kind, owner, field, fallback, allowed, unit, help)                                                   \
+  {path, KEY_##kind, offsetof(struct owner, field), fallback, allowed, unit, help},
+#include "scene/scene_keys.def"
+#undef KEY
+};
+
+static const size_t table_count = sizeof table / sizeof table[0];
+
+const struct key *key_table(size_t *count)
+{
+  *count = table_count;
+  return table;
+}
+
+bool key_is_required(const struct key *key)
+{
+  return strcmp(key->fallback, "required") == 0;
+}
+
+bool key_is_automatic(const struct key *key)
+{
+  return strcmp(key->fallback, "auto") == 0;
+}
+
+bool key_has_default(const struct key *key)
+{
+  return !key_is_required(key) && strcmp(key->fallback, "derived") != 0;
+}
+
+const char *key_within(const char *path, const char *section)
+{
+  size_t length = strlen(section);
+  if (length == 0) return path;
+  return strncmp(path, section, length) == 0 && path[length] == '.' ? path + length + 1 : NULL;
+}
+
+enum key_role key_role(const char *section, const char *name, const struct key **key)
+{
+  size_t length = strlen(name);
+  for (size_t i = 0; i < table_count; i++) {
+    const char *rest = key_within(table[i].path, section);
+    if (!rest || strncmp(rest, name, length) != 0) continue;
+    if (rest[length] == '\0') {
+      *key = &table[i];
+      return ROLE_KEY;
+    }
+    if (rest[length] == '.') return ROLE_SECTION;
+    if (strncmp(rest + length, "[].", 3) == 0) return ROLE_LIST;
+  }
+  return ROLE_UNKNOWN;
+}
+
+void key_names(const char *section, char *text, size_t size)
+{
+  const char *last = "";
+  size_t used = 0, last_length = 0;
+  *text = '\0';
+  for (size_t i = 0; i < table_count; i++) {
+    const char *name = key_within(table[i].path, section);
+    if (!name) continue;
+    size_t length = strcspn(name, ".[");
+    if (length == last_length && strncmp(name, last, length) == 0) continue;
+    int added = snprintf(text + used, size - used, "%s%.*s", used ? ", " : "", (int)length, name);
+    if (added < 0 || (size_t)added >= size - used) return;
+    used += (size_t)added;
+    last = name;
+    last_length = length;
+  }
+}
+
+static const char *last_name(const char *path)
+{
+  const char *dot = strrchr(path, '.');
+  return dot ? dot + 1 : path;
+}
+
+/* How unlike `name` in `section` a path of the table is. Names of the same section are compared alone. For another
+ * section the whole paths are or, if they have much in common, the names, both at a price: in doubt it is a slip in the
+ * same section. */
+static size_t unlikeness(const char *section, const char *name, const char *candidate)
+{
+  const char *rest = key_within(candidate, section);
+  if (rest && !strchr(rest, '.')) return edit_distance(name, rest);
+  char full[2 * KEY_PATH];
+  snprintf(full, sizeof full, "%.*s%s%.*s", KEY_PATH - 2, section, *section ? "." : "", KEY_PATH - 1, name);
+  size_t whole = edit_distance(full, candidate) + 1;
+  size_t last = edit_distance(name, last_name(candidate));
+  return 2 * last < strlen(name) && last + 2 < whole ? last + 2 : whole;
+}
+
+struct nearest {
+  const char *section;
+  const char *name;
+  char *path;
+  size_t distance;
+};
+
+/* Compares the first `length` characters of a path: a key, or a section or list on the way to one. */
+static void consider(struct nearest *nearest, const char *path, size_t length)
+{
+  char candidate[KEY_PATH];
+  snprintf(candidate, sizeof candidate, "%.*s", (int)length, path);
+  if (length > 2 && strcmp(candidate + length - 2, "[]") == 0) candidate[length - 2] = '\0';
+  size_t distance = unlikeness(nearest->section, nearest->name, candidate);
+  if (distance >= nearest->distance) return;
+  nearest->distance = distance;
+  strcpy(nearest->path, candidate);
+}
+
+void key_nearest(const char *section, const char *name, char path[KEY_PATH])
+{
+  struct nearest nearest = {section, name, path, SIZE_MAX};
+  for (size_t i = 0; i < table_count; i++) {
+    for (const char *end = table[i].path; *end; end += *end == '.') {
+      end += strcspn(end, ".");
+      consider(&nearest, table[i].path, (size_t)(end - table[i].path));
+    }
+  }
+}
+
+static void print_fallback(const struct key *key, FILE *file)
+{
+  if (key_is_required(key))
+    fputs("required", file);
+  else
+    fprintf(file, "default %s", key_has_default(key) ? key->fallback : "as follows");
+}
+
+void scene_print_keys(FILE *file)
+{
+  for (size_t i = 0; i < table_count; i++) {
+    const struct key *key = &table[i];
+    char allowed[VALUE_TEXT];
+    value_describe(key, allowed);
+    fprintf(file, "%s\n    %s", key->path, allowed);
+    if (*key->unit) fprintf(file, "; %s", key->unit);
+    fputs("; ", file);
+    print_fallback(key, file);
+    fprintf(file, "\n    %s\n", key->help);
+  }
+}

@@ -1,0 +1,303 @@
+#include "scene/scene_value.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_COMPONENTS = 4 };
+
+struct range {
+  double low, high;
+  bool low_open, high_open;
+};
+
+static size_t components(enum key_kind kind)
+{
+  switch (kind) {
+  case KEY_BOX:
+    return 4;
+  case KEY_SIZE:
+  case KEY_POINT:
+  case KEY_VECTOR:
+    return 2;
+  default:
+    return 1;
+  }
+}
+
+static bool is_integral(enum key_kind kind)
+{
+  return kind == KEY_INTEGER || kind == KEY_LONG || kind == KEY_SIZE;
+}
+
+static bool is_numeric(enum key_kind kind)
+{
+  return kind != KEY_TEXT && kind != KEY_FLAG && kind != KEY_CHOICE;
+}
+
+/* Reads "[low, high)" of the table; returns what follows it. */
+static const char *parse_range(const char *text, struct range *range)
+{
+  char *end;
+  range->low_open = *text == '(';
+  range->low = strtod(text + 1, &end);
+  range->high = strtod(end + 1, &end);
+  range->high_open = *end == ')';
+  return end + 1;
+}
+
+static bool in_range(const struct range *range, double x)
+{
+  bool above = range->low_open ? x > range->low : x >= range->low;
+  bool below = range->high_open ? x < range->high : x <= range->high;
+  return above && below;
+}
+
+/* A decimal number as YAML's core schema writes it, but neither hexadecimal nor infinite, and nothing after it. */
+static bool is_decimal(const char *text)
+{
+  const char *at = text + (*text == '+' || *text == '-');
+  size_t digits = strspn(at, "0123456789");
+  at += digits;
+  if (*at == '.') {
+    size_t fraction = strspn(at + 1, "0123456789");
+    digits += fraction;
+    at += 1 + fraction;
+  }
+  if (digits == 0) return false;
+  if (*at == 'e' || *at == 'E') {
+    at += 1 + (at[1] == '+' || at[1] == '-');
+    size_t exponent = strspn(at, "0123456789");
+    if (exponent == 0) return false;
+    at += exponent;
+  }
+  return *at == '\0';
+}
+
+/* True if a decimal number, as written, has no fraction: its last digit other than 0 is not behind the point. */
+static bool is_whole(const char *text)
+{
+  size_t mantissa = strcspn(text, "eE");
+  size_t point = strcspn(text, ".eE");
+  long exponent = text[mantissa] ? strtol(text + mantissa + 1, NULL, 10) : 0;
+  for (size_t i = mantissa; i-- > 0;) {
+    if (text[i] < '1' || text[i] > '9') continue;
+    long place = i < point ? (long)(point - i) - 1 : -(long)(i - point);
+    return exponent >= -place;
+  }
+  return true;
+}
+
+static bool read_number(const struct tree_node *node, bool whole, double *number)
+{
+  if (node->kind != TREE_SCALAR || !node->plain || !is_decimal(node->text)) return false;
+  if (whole && !is_whole(node->text)) return false;
+  errno = 0;
+  *number = strtod(node->text, NULL);
+  return errno == 0 && isfinite(*number);
+}
+
+static bool read_numbers(const struct key *key, const struct tree_node *node, double *numbers)
+{
+  size_t count = components(key->kind);
+  bool whole = is_integral(key->kind);
+  struct range range;
+  parse_range(key->allowed, &range);
+  if (count == 1) return read_number(node, whole, numbers) && in_range(&range, numbers[0]);
+  if (node->kind != TREE_LIST || node->count != count) return false;
+  for (size_t i = 0; i < count; i++) {
+    if (!read_number(node->entries[i].value, whole, &numbers[i])) return false;
+    if (key->kind != KEY_VECTOR && !in_range(&range, numbers[i])) return false;
+  }
+  return key->kind != KEY_VECTOR || in_range(&range, hypot(numbers[0], numbers[1]));
+}
+
+/* The ranges of the table keep whole numbers within their types. */
+static void store_numbers(const struct key *key, const double *numbers, unsigned char *field)
+{
+  for (size_t i = 0; i < components(key->kind); i++) {
+    if (key->kind == KEY_LONG) {
+      int64_t wide = (int64_t)numbers[i];
+      memcpy(field + i * sizeof wide, &wide, sizeof wide);
+    } else if (is_integral(key->kind)) {
+      int narrow = (int)numbers[i];
+      memcpy(field + i * sizeof narrow, &narrow, sizeof narrow);
+    } else {
+      memcpy(field + i * sizeof numbers[i], &numbers[i], sizeof numbers[i]);
+    }
+  }
+}
+
+static bool is_null(const struct tree_node *node)
+{
+  static const char *const words[] = {"", "~", "null", "Null", "NULL"};
+  for (size_t i = 0; i < sizeof words / sizeof words[0]; i++) {
+    if (node->plain && strcmp(node->text, words[i]) == 0) return true;
+  }
+  return false;
+}
+
+static bool read_flag(const struct tree_node *node, unsigned char *field)
+{
+  bool flag = strcmp(node->text, "true") == 0;
+  if (!node->plain || (!flag && strcmp(node->text, "false") != 0)) return false;
+  memcpy(field, &flag, sizeof flag);
+  return true;
+}
+
+static bool read_choice(const char *choices, const char *text, unsigned char *field)
+{
+  int index = 0;
+  for (const char *at = choices; *at; at += *at == '|') {
+    size_t length = strcspn(at, "|");
+    if (strlen(text) == length && strncmp(at, text, length) == 0) {
+      memcpy(field, &index, sizeof index);
+      return true;
+    }
+    at += length;
+    index++;
+  }
+  return false;
+}
+
+bool value_read(const struct key *key, const struct tree_node *node, void *owner)
+{
+  unsigned char *field = (unsigned char *)owner + key->offset;
+  bool automatic = key_is_automatic(key) && node->kind == TREE_SCALAR && strcmp(node->text, "auto") == 0;
+  if (is_numeric(key->kind)) {
+    double numbers[MOST_COMPONENTS] = {0};
+    if (!automatic && !read_numbers(key, node, numbers)) return false;
+    store_numbers(key, numbers, field);
+    return true;
+  }
+  if (node->kind != TREE_SCALAR) return false;
+  if (key->kind == KEY_FLAG) return read_flag(node, field);
+  if (key->kind == KEY_CHOICE) return read_choice(key->allowed, node->text, field);
+  if (is_null(node)) return false;
+  const char *text = automatic ? NULL : node->text;
+  memcpy(field, &text, sizeof text);
+  return true;
+}
+
+void value_format_number(double number, char text[32])
+{
+  for (int digits = 15; digits <= 17; digits++) {
+    snprintf(text, 32, "%.*g", digits, number);
+    if (strtod(text, NULL) == number) return;
+  }
+}
+
+static void format_component(const struct key *key, const unsigned char *field, size_t i, char text[32])
+{
+  if (key->kind == KEY_LONG) {
+    int64_t wide;
+    memcpy(&wide, field + i * sizeof wide, sizeof wide);
+    snprintf(text, 32, "%lld", (long long)wide);
+  } else if (is_integral(key->kind)) {
+    int narrow;
+    memcpy(&narrow, field + i * sizeof narrow, sizeof narrow);
+    snprintf(text, 32, "%d", narrow);
+  } else {
+    double number;
+    memcpy(&number, field + i * sizeof number, sizeof number);
+    value_format_number(number, text);
+  }
+}
+
+static void format_numbers(const struct key *key, const unsigned char *field, char text[VALUE_TEXT])
+{
+  size_t count = components(key->kind), length = 0;
+  for (size_t i = 0; i < count; i++) {
+    char number[32];
+    format_component(key, field, i, number);
+    const char *before = i > 0 ? ", " : count > 1 ? "[" : "";
+    length += (size_t)snprintf(text + length, VALUE_TEXT - length, "%s%s", before, number);
+  }
+  if (count > 1) snprintf(text + length, VALUE_TEXT - length, "]");
+  if (key_is_automatic(key) && strcmp(text, "0") == 0) strcpy(text, "auto");
+}
+
+static void format_choice(const char *choices, const unsigned char *field, char text[VALUE_TEXT])
+{
+  int index;
+  memcpy(&index, field, sizeof index);
+  const char *at = choices;
+  while (index-- > 0) at += strcspn(at, "|") + 1;
+  snprintf(text, VALUE_TEXT, "%.*s", (int)strcspn(at, "|"), at);
+}
+
+void value_format(const struct key *key, const void *owner, char text[VALUE_TEXT])
+{
+  const unsigned char *field = (const unsigned char *)owner + key->offset;
+  if (is_numeric(key->kind)) {
+    format_numbers(key, field, text);
+  } else if (key->kind == KEY_CHOICE) {
+    format_choice(key->allowed, field, text);
+  } else {
+    bool flag;
+    memcpy(&flag, field, sizeof flag);
+    strcpy(text, flag ? "true" : "false");
+  }
+}
+
+/* Text under construction in a buffer of VALUE_TEXT bytes. */
+struct phrase {
+  char *text;
+  size_t length;
+};
+
+static void say(struct phrase *phrase, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+static void say(struct phrase *phrase, const char *format, ...)
+{
+  va_list arguments;
+  va_start(arguments, format);
+  int length = vsnprintf(phrase->text + phrase->length, VALUE_TEXT - phrase->length, format, arguments);
+  va_end(arguments);
+  if (length > 0) phrase->length += (size_t)length;
+  if (phrase->length >= VALUE_TEXT) phrase->length = VALUE_TEXT - 1;
+}
+
+static void describe_choices(struct phrase *phrase, const char *choices)
+{
+  for (const char *at = choices; *at; at += *at == '|') {
+    int length = (int)strcspn(at, "|");
+    const char *before = at == choices ? "" : at[length] ? ", " : " or ";
+    say(phrase, "%s%.*s", before, length, at);
+    at += length;
+  }
+}
+
+static void describe_range(struct phrase *phrase, const struct key *key)
+{
+  struct range range;
+  const char *reason = parse_range(key->allowed, &range);
+  bool low = isfinite(range.low) && key->kind != KEY_VECTOR, high = isfinite(range.high);
+  if (low) say(phrase, " %s %.13g", range.low_open ? ">" : ">=", range.low);
+  if (low && high) say(phrase, " and");
+  if (high) say(phrase, " %s %.13g", range.high_open ? "<" : "<=", range.high);
+  if (*reason) say(phrase, " (%s)", reason + strspn(reason, "; "));
+}
+
+void value_describe(const struct key *key, char text[VALUE_TEXT])
+{
+  static const char *const nouns[] = {
+      [KEY_TEXT] = "text",
+      [KEY_FLAG] = "true or false",
+      [KEY_CHOICE] = "",
+      [KEY_INTEGER] = "a whole number",
+      [KEY_LONG] = "a whole number",
+      [KEY_SIZE] = "[x, y], whole numbers",
+      [KEY_NUMBER] = "a number",
+      [KEY_POINT] = "[x, y]",
+      [KEY_VECTOR] = "[x, y] of length",
+      [KEY_BOX] = "[x0, y0, x1, y1], numbers",
+  };
+  struct phrase phrase = {text, 0};
+  say(&phrase, "%s%s", key_is_automatic(key) ? "auto or " : "", nouns[key->kind]);
+  if (key->kind == KEY_CHOICE) describe_choices(&phrase, key->allowed);
+  if (is_numeric(key->kind)) describe_range(&phrase, key);
+}

@@ -1,0 +1,24 @@
+/* The values of keys: read from a tree, checked against the table, written as YAML, described in words. */
+#ifndef DELBM_SCENE_SCENE_VALUE_H
+#define DELBM_SCENE_SCENE_VALUE_H
+
+#include "scene/scene_keys.h"
+#include "scene/scene_tree.h"
+
+enum { VALUE_TEXT = 256 };
+
+/* Reads a node as the key's value into `owner` (struct draft or disc_draft). False, with nothing stored, if it is not
+ * what the key allows. A text stays in the tree; `auto` is stored as zero. */
+bool value_read(const struct key *key, const struct tree_node *node, void *owner);
+
+/* Writes the value in `owner` as it would be written in a case; texts excepted. Numbers are as short
+ * as reads back equal. */
+void value_format(const struct key *key, const void *owner, char text[VALUE_TEXT]);
+
+/* Says what the key allows: "a number > 0 and <= 10". */
+void value_describe(const struct key *key, char text[VALUE_TEXT]);
+
+/* The shortest of 15 to 17 digits that reads back equal. */
+void value_format_number(double number, char text[32]);
+
+#endif

@@ -1,0 +1,107 @@
+#include "sim/diagnostics.h"
+
+#include "fluid/boundary.h"
+
+#include <math.h>
+
+struct cell_moments {
+  double excess, jx, jy; /* rho - 1, j */
+};
+
+static struct cell_moments moments_at(const struct populations *p, int x, int y)
+{
+  double g[Q];
+  populations_cell(p, x, y, g);
+  struct cell_moments m = {0};
+  for (int i = 0; i < Q; i++) {
+    m.excess += g[i];
+    m.jx += d2q9_ex[i] * g[i];
+    m.jy += d2q9_ey[i] * g[i];
+  }
+  return m;
+}
+
+static void fill_ghosts(struct populations *p, const struct side side[SIDE_COUNT], int y)
+{
+  if (p->parity) boundary_before_row(p, side, y);
+}
+
+struct fluid_totals diagnostics_totals(struct populations *p, const struct side side[SIDE_COUNT])
+{
+  struct fluid_totals totals = {0};
+#pragma omp parallel for ordered schedule(static, 1)
+  for (int y = 0; y < p->ny; y++) {
+    struct fluid_totals row = {0};
+    fill_ghosts(p, side, y);
+    for (int x = 0; x < p->nx; x++) {
+      const struct cell_moments m = moments_at(p, x, y);
+      row.excess_mass += m.excess;
+      row.jx += m.jx;
+      row.jy += m.jy;
+    }
+#pragma omp ordered
+    {
+      totals.excess_mass += row.excess_mass;
+      totals.jx += row.jx;
+      totals.jy += row.jy;
+    }
+  }
+  return totals;
+}
+
+/* True where a is worse than b: faster, or not finite; of equals the first cell. */
+static bool worse(const struct worst_cell *a, const struct worst_cell *b)
+{
+  if (isnan(a->speed2) != isnan(b->speed2)) return isnan(a->speed2);
+  if (!isnan(a->speed2) && a->speed2 != b->speed2) return a->speed2 > b->speed2;
+  return a->y != b->y ? a->y < b->y : a->x < b->x;
+}
+
+static struct worst_cell worst_of_row(const struct populations *p, int y)
+{
+  struct worst_cell worst = {.speed2 = -1, .y = y};
+  for (int x = 0; x < p->nx; x++) {
+    const struct cell_moments m = moments_at(p, x, y);
+    const double rho = 1 + m.excess, speed2 = (m.jx * m.jx + m.jy * m.jy) / (rho * rho);
+    const bool sound = isfinite(speed2) && rho > 0;
+    if (speed2 <= worst.speed2 && sound) continue;
+    worst = (struct worst_cell){sound ? speed2 : NAN, x, y};
+    if (!sound) break;
+  }
+  return worst;
+}
+
+struct worst_cell diagnostics_worst(struct populations *p, const struct side side[SIDE_COUNT])
+{
+  struct worst_cell worst = {.speed2 = -1};
+#pragma omp parallel
+  {
+    struct worst_cell own = {.speed2 = -1};
+#pragma omp for schedule(static) nowait
+    for (int y = 0; y < p->ny; y++) {
+      fill_ghosts(p, side, y);
+      const struct worst_cell row = worst_of_row(p, y);
+      if (worse(&row, &own)) own = row;
+    }
+#pragma omp critical(diagnostics_worst)
+    if (worse(&own, &worst)) worst = own;
+  }
+  return worst;
+}
+
+void diagnostics_fields(struct populations *p, const struct side side[SIDE_COUNT], const double force[2],
+                        const double uniform[2], double *density, double *ux, double *uy)
+{
+#pragma omp parallel for schedule(static)
+  for (int y = 0; y < p->ny; y++) {
+    fill_ghosts(p, side, y);
+    for (int x = 0; x < p->nx; x++) {
+      const struct cell_moments m = moments_at(p, x, y);
+      const size_t at = (size_t)y * (size_t)p->nx + (size_t)x;
+      const double rho = 1 + m.excess;
+      if (density) density[at] = rho;
+      if (ux) ux[at] = (m.jx + (rho * force[0] + uniform[0]) / 2) / rho;
+      if (uy) uy[at] = (m.jy + (rho * force[1] + uniform[1]) / 2) / rho;
+    }
+  }
+}

@@ -1,0 +1,31 @@
+/* Looks at the state: mass, momentum, the fastest cell, what is not finite. Sums are taken per row, the rows added in order: the
+ * same bits for any number of threads. */
+#ifndef DELBM_SIM_DIAGNOSTICS_H
+#define DELBM_SIM_DIAGNOSTICS_H
+
+#include "fluid/populations.h"
+#include "solid/discs.h"
+
+/* Speed of Mach 0.6, 0.6 c_s: beyond it the expansion behind the method has lost its meaning. */
+static const double diagnostics_fastest = 0.34641016151377546;
+
+/* Sums of rho - 1 and j over all cells. */
+struct fluid_totals {
+  double excess_mass, jx, jy;
+};
+
+/* The worst cell found by a look for divergence. */
+struct worst_cell {
+  double speed2; /* NAN if a cell is not finite */
+  int x, y;
+};
+
+/* Both read the populations that the coming step will collide; with parity 1 ghosts are filled first. Outside of parallel regions. */
+struct fluid_totals diagnostics_totals(struct populations *populations, const struct side side[SIDE_COUNT]);
+struct worst_cell diagnostics_worst(struct populations *populations, const struct side side[SIDE_COUNT]);
+
+/* Density and velocity (j + F/2)/rho, F = rho force + uniform, of every cell into arrays of nx * ny; any may be NULL. */
+void diagnostics_fields(struct populations *populations, const struct side side[SIDE_COUNT], const double force[2],
+                        const double uniform[2], double *density, double *ux, double *uy);
+
+#endif

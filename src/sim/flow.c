@@ -1,0 +1,126 @@
+#include "sim/flow.h"
+
+#include "base/memory.h"
+#include "fluid/boundary.h"
+#include "lattice/moments.h"
+
+#include <omp.h>
+#include <stdlib.h>
+
+bool flow_create(struct flow *f, const struct scene *scene, const struct plan *plan, struct status *status)
+{
+  *f = (struct flow){
+      .scene = scene,
+      .force = plan->force,
+      .constants = {.rates = scene->fluid.rates, .force = {scene->fluid.force[0], scene->fluid.force[1]}}};
+  const int nx = scene->domain.size[0], ny = scene->domain.size[1];
+  f->kernel = sweep_find(scene->fluid.kernel, scene->fluid.precision, status);
+  if (!f->kernel) return false;
+  if (!populations_create(&f->populations, nx, ny, scene_is_periodic(scene, 1), scene->fluid.precision, status))
+    return false;
+  if (!f->force) return true;
+  f->row_momentum = memory_allocate((size_t)ny, sizeof *f->row_momentum, "the rows' momentum", status);
+  return f->row_momentum != NULL;
+}
+
+void flow_destroy(struct flow *f)
+{
+  for (int t = 0; f->covers && t < f->threads; t++) cover_destroy(&f->covers[t]);
+  free(f->covers);
+  free(f->row_momentum);
+  populations_destroy(&f->populations);
+}
+
+bool flow_prepare(struct flow *f, int threads, struct status *status)
+{
+  if (f->scene->particles.count == 0 || threads <= f->threads) return true;
+  size_t capacity = (size_t)f->threads;
+  if (!memory_grow(&f->covers, &capacity, (size_t)threads, sizeof *f->covers, "the rows' covers", status)) return false;
+  for (; f->threads < threads; f->threads++)
+    if (!cover_create(&f->covers[f->threads], f->populations.nx, f->kernel->precision, status)) return false;
+  return true;
+}
+
+/* Equilibrium at the reference density and momentum j, as deviations. */
+static void set_equilibrium(struct populations *p, int x, int y, double jx, double jy)
+{
+  double m[Q], g[Q];
+  moments_equilibrium(1, jx, jy, m);
+  populations_from_moments(m, g);
+  for (int i = 0; i < Q; i++) populations_set(p, populations_source(p, i, x, y), g[i] - d2q9_weight[i]);
+}
+
+void flow_start(struct flow *f, const struct occupation *o, const struct discs *discs)
+{
+  const double at_rest[2] = {-f->constants.force[0] / 2, -f->constants.force[1] / 2};
+  const bool forced = at_rest[0] != 0 || at_rest[1] != 0;
+  for (int y = 0; y < f->populations.ny; y++) {
+    for (int x = 0; forced && x < f->populations.nx; x++)
+      set_equilibrium(&f->populations, x, y, at_rest[0], at_rest[1]);
+    size_t count = 0;
+    const struct run *runs = o ? occupation_row(o, y, &count) : NULL;
+    for (size_t r = 0; r < count; r++) {
+      const size_t disc = runs[r].disc;
+      for (int k = 0; k < runs[r].n; k++) {
+        const double b = o->share[runs[r].cell + (size_t)k], omega = discs->omega[disc];
+        const double vx = discs->vx[disc] - omega * runs[r].ry, vy = discs->vy[disc] + omega * (runs[r].rx + k);
+        if (vx != 0 || vy != 0)
+          set_equilibrium(&f->populations, runs[r].x + k, y, at_rest[0] + b * vx, at_rest[1] + b * vy);
+      }
+    }
+  }
+}
+
+void stage_boundary(struct flow *f)
+{
+#pragma omp for schedule(static)
+  for (int y = 0; y < f->populations.ny; y++) boundary_before_row(&f->populations, f->scene->domain.side, y);
+}
+
+static void sweep_row_at(struct flow *f, int y, const struct occupation *o, const struct exchange *e)
+{
+  double unused[2], *momentum = f->force ? f->row_momentum[y] : unused;
+  const int nx = f->populations.nx;
+  size_t count = 0;
+  const struct run *runs = o ? occupation_row(o, y, &count) : NULL;
+  void *a[Q];
+  populations_cells(&f->populations, 0, y, a);
+  if (count == 0) {
+    f->kernel->fluid[f->force](a, nx, &f->constants, NULL, momentum);
+    return;
+  }
+  struct cover *cover = &f->covers[omp_get_thread_num()];
+  cover_paint(cover, runs, count, o->share, e->surface);
+  f->kernel->discs[f->scene->coupling.form][f->force](a, nx, &f->constants, &cover->row, momentum);
+  cover_clear(cover, runs, count);
+}
+
+/* The uniform force that cancels the mean momentum that this step leaves, along the axes that walls close (PHYSICS 2.3). */
+static void cancel_flux(struct flow *f)
+{
+  double sum[2] = {0, 0};
+  for (int y = 0; y < f->populations.ny; y++) {
+    sum[0] += f->row_momentum[y][0];
+    sum[1] += f->row_momentum[y][1];
+  }
+  const double cells = (double)f->populations.nx * f->populations.ny;
+  for (int axis = 0; axis < 2; axis++)
+    f->constants.uniform[axis] = scene_is_closed(f->scene, axis) ? -sum[axis] / cells : 0;
+}
+
+void stage_sweep(struct flow *f, bool ghosts_filled, const struct occupation *o, const struct exchange *e)
+{
+  struct populations *p = &f->populations;
+  const struct side *side = f->scene->domain.side;
+#pragma omp for schedule(static)
+  for (int y = 0; y < p->ny; y++) {
+    if (p->parity && !ghosts_filled) boundary_before_row(p, side, y);
+    sweep_row_at(f, y, o, e);
+    if (p->parity) boundary_after_row(p, side, y);
+  }
+#pragma omp single
+  {
+    if (f->scene->fluid.zero_flux) cancel_flux(f);
+    p->parity ^= 1;
+  }
+}

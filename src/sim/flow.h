@@ -1,0 +1,38 @@
+/* The sweep over all cells (stage 4 of the step), and the boundary pass before it. Rows are shared out in order and without
+ * branches per cell: rows that no disc touches take the kernel without discs. A step of parity 0 needs no boundary at all. */
+#ifndef DELBM_SIM_FLOW_H
+#define DELBM_SIM_FLOW_H
+
+#include "coupling/cover.h"
+#include "sim/plan.h"
+
+struct flow {
+  const struct scene *scene;
+  const struct sweep_kernel *kernel;
+  bool force;
+  struct populations populations;
+  struct sweep_constants constants;
+  double (*row_momentum)[2]; /* after the sweep, of each row; with a force only */
+  struct cover *covers;      /* of each thread */
+  int threads;
+};
+
+bool flow_create(struct flow *flow, const struct scene *scene, const struct plan *plan, struct status *status);
+void flow_destroy(struct flow *flow);
+
+/* The initial state: fluid at rest, (j + F/2)/rho = 0, and inside discs moving with them. Fluid that started out of step with its
+ * disc would be reflected to and fro about its velocity, for ever in the owen form. */
+void flow_start(struct flow *flow, const struct occupation *occupation, const struct discs *discs);
+
+/* Prepares for a parallel region of `threads`. */
+bool flow_prepare(struct flow *flow, int threads, struct status *status);
+
+/* Called by all threads of a parallel region or outside of one. stage_boundary fills the ghosts of all rows; it is needed with
+ * parity 1 where the exchange reads them before the sweep, or where boundary_fill_first says so. */
+void stage_boundary(struct flow *flow);
+
+/* `occupation` and `exchange` are NULL in a scene without discs. Ends with the next step's parity and uniform force. */
+void stage_sweep(struct flow *flow, bool ghosts_filled, const struct occupation *occupation,
+                 const struct exchange *exchange);
+
+#endif

@@ -1,0 +1,226 @@
+#include "sim/simulation.h"
+
+#include "base/memory.h"
+#include "fluid/boundary.h"
+#include "sim/diagnostics.h"
+#include "sim/flow.h"
+#include "sim/motion.h"
+
+#include <math.h>
+#include <omp.h>
+#include <stdlib.h>
+
+struct simulation {
+  const struct scene *scene;
+  struct plan plan;
+  struct flow flow;
+  struct discs discs;
+  struct occupation occupation;
+  struct exchange exchange;
+  struct motion motion;
+  struct team team;
+  struct stage_times times;
+  int64_t step;
+  double initial_momentum[2];
+  double max_mach;
+};
+
+/* Momentum that the coupling conserves: of all fluid, inside discs too, and (m - m_f) V of each disc. */
+static void conserved_momentum(struct simulation *s, double momentum[2])
+{
+  const struct fluid_totals fluid = diagnostics_totals(&s->flow.populations, s->scene->domain.side);
+  momentum[0] = fluid.jx;
+  momentum[1] = fluid.jy;
+  for (size_t i = 0; i < s->discs.count; i++) {
+    const double mass = s->discs.mass[i] - s->discs.fluid_mass[i];
+    momentum[0] += mass * s->discs.vx[i];
+    momentum[1] += mass * s->discs.vy[i];
+  }
+}
+
+static bool create_discs(struct simulation *s, struct status *status)
+{
+  if (!s->plan.exchange) return true;
+  return discs_create(&s->discs, s->scene, status) &&
+         occupation_create(&s->occupation, s->scene, &s->discs, s->plan.reach, status) &&
+         exchange_create(&s->exchange, s->scene, &s->discs, status) &&
+         motion_create(&s->motion, s->scene, &s->plan, &s->discs, status);
+}
+
+bool simulation_create(struct simulation **simulation, const struct scene *scene, struct status *status)
+{
+  struct simulation *s = memory_allocate(1, sizeof *s, "the simulation", status);
+  *simulation = s;
+  if (!s) return false;
+  s->scene = scene;
+  s->plan = plan_of(scene);
+  if (!flow_create(&s->flow, scene, &s->plan, status) || !create_discs(s, status)) {
+    simulation_destroy(s);
+    *simulation = NULL;
+    return false;
+  }
+  if (s->plan.exchange) stage_occupation(&s->occupation, &s->discs, &s->team);
+  if (s->team.failed) {
+    *status = s->team.first;
+    simulation_destroy(s);
+    *simulation = NULL;
+    return false;
+  }
+  flow_start(&s->flow, s->plan.exchange ? &s->occupation : NULL, &s->discs);
+  conserved_momentum(s, s->initial_momentum);
+  return true;
+}
+
+void simulation_destroy(struct simulation *s)
+{
+  if (!s) return;
+  motion_destroy(&s->motion);
+  exchange_destroy(&s->exchange);
+  occupation_destroy(&s->occupation);
+  discs_destroy(&s->discs);
+  flow_destroy(&s->flow);
+  free(s);
+}
+
+/* Adds the time since *since to a stage. All threads are behind the same barrier; one of them keeps the clock. */
+static void charge(struct simulation *s, enum stage stage, double *since)
+{
+#pragma omp master
+  {
+    const double now = clock_now();
+    s->times.seconds[stage] += now - *since;
+    *since = now;
+  }
+}
+
+/* One step, by all threads of the parallel region. The exchange precedes the contacts so that these, and their sub-steps, act
+ * through the same response as the fluid does. */
+static void step(struct simulation *s, double *since)
+{
+  const struct plan *plan = &s->plan;
+  const struct occupation *occupation = plan->exchange ? &s->occupation : NULL;
+  const bool fill_ghosts = s->flow.populations.parity && (plan->exchange || boundary_fill_first(s->scene->domain.side));
+  if (plan->occupation == OCCUPATION_EVERY_STEP) {
+    stage_occupation(&s->occupation, &s->discs, &s->team);
+    charge(s, STAGE_OCCUPATION, since);
+    if (s->team.stop) return;
+  }
+  if (fill_ghosts) {
+    stage_boundary(&s->flow);
+    charge(s, STAGE_BOUNDARY, since);
+  }
+  if (plan->exchange) {
+    stage_exchange(&s->exchange, s->flow.kernel, &s->flow.populations, &s->flow.constants, &s->occupation, &s->discs,
+                   s->step, &s->team);
+    charge(s, STAGE_EXCHANGE, since);
+    if (s->team.stop) return;
+    stage_contact(&s->motion, &s->occupation, &s->exchange, &s->discs, s->step, &s->team);
+    charge(s, STAGE_CONTACT, since);
+    if (s->team.stop) return;
+  }
+  stage_sweep(&s->flow, fill_ghosts, occupation, &s->exchange);
+  charge(s, STAGE_SWEEP, since);
+}
+
+/* Steps up to the next look for divergence, in one parallel region. */
+static void run_steps(struct simulation *s, int64_t steps)
+{
+#pragma omp parallel
+  {
+    double since = clock_now();
+    for (int64_t k = 0; k < steps && !s->team.stop; k++) {
+      step(s, &since);
+#pragma omp single
+      s->step += !s->team.stop;
+    }
+  }
+}
+
+bool simulation_check(struct simulation *s, struct status *status)
+{
+  if (s->team.failed) {
+    *status = s->team.first;
+    return false;
+  }
+  const struct worst_cell worst = diagnostics_worst(&s->flow.populations, s->scene->domain.side);
+  const double speed = sqrt(worst.speed2), mach = speed * sqrt(3);
+  if (speed <= diagnostics_fastest) {
+    s->max_mach = fmax(s->max_mach, mach);
+    return true;
+  }
+  if (isnan(speed))
+    status_fail(status, DELBM_FAILED, "diverged by step %lld: cell (%d, %d) is no longer finite", (long long)s->step,
+                worst.x, worst.y);
+  else
+    status_fail(status, DELBM_FAILED, "diverged by step %lld: the fluid at cell (%d, %d) moves at Mach %.3g, above 0.6",
+                (long long)s->step, worst.x, worst.y, mach);
+  team_fail(&s->team, status);
+  return false;
+}
+
+bool simulation_advance(struct simulation *s, int64_t steps, struct status *status)
+{
+  if (!flow_prepare(&s->flow, omp_get_max_threads(), status)) return false;
+  const int64_t end = s->step + steps, look = s->scene->run.check;
+  while (s->step < end) {
+    const int64_t until_look = look - s->step % look;
+    run_steps(s, end - s->step < until_look ? end - s->step : until_look);
+    if (s->team.failed || (s->step % look == 0 && !simulation_check(s, status))) {
+      *status = s->team.first;
+      return false;
+    }
+  }
+  return true;
+}
+
+int64_t simulation_step(const struct simulation *s)
+{
+  return s->step;
+}
+
+const struct scene *simulation_scene(const struct simulation *s)
+{
+  return s->scene;
+}
+
+const struct discs *simulation_discs(const struct simulation *s)
+{
+  return &s->discs;
+}
+
+void simulation_fields(struct simulation *s, double *density, double *ux, double *uy)
+{
+  diagnostics_fields(&s->flow.populations, s->scene->domain.side, s->flow.constants.force, s->flow.constants.uniform,
+                     density, ux, uy);
+}
+
+/* Change of the conserved momentum that body forces do not explain; NAN where something else exchanges momentum. */
+static double momentum_drift(struct simulation *s)
+{
+  const bool closed_system = scene_is_periodic(s->scene, 0) && scene_is_periodic(s->scene, 1) &&
+                             s->discs.free == s->discs.count && s->scene->coupling.solve == SOLVE_IMPLICIT;
+  if (!closed_system) return NAN;
+  const double cells = (double)s->scene->domain.size[0] * s->scene->domain.size[1];
+  double buoyant_mass = 0, momentum[2], largest = 0;
+  for (size_t i = 0; i < s->discs.count; i++) buoyant_mass += s->discs.mass[i] - s->discs.fluid_mass[i];
+  conserved_momentum(s, momentum);
+  for (int axis = 0; axis < 2; axis++) {
+    const double applied = cells * s->scene->fluid.force[axis] + buoyant_mass * s->scene->particles.gravity[axis];
+    const double unexplained = momentum[axis] - s->initial_momentum[axis] - (double)s->step * applied;
+    largest = fmax(largest, fabs(unexplained) / cells);
+  }
+  return largest;
+}
+
+void simulation_report(struct simulation *s, struct simulation_report *report)
+{
+  const double cells = (double)s->scene->domain.size[0] * s->scene->domain.size[1];
+  *report = (struct simulation_report){
+      .threads = omp_get_max_threads(),
+      .kernel = s->flow.kernel->name,
+      .times = s->times,
+      .mass_drift = fabs(diagnostics_totals(&s->flow.populations, s->scene->domain.side).excess_mass) / cells,
+      .momentum_drift = momentum_drift(s),
+      .max_mach = s->max_mach,
+      .max_substeps = s->plan.exchange ? s->motion.most_substeps : 1};
+}

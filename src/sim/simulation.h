@@ -1,0 +1,43 @@
+/* The simulation: a scene set in motion. One step is four stages, each one function (occupation, exchange, contact, sweep),
+ * run by all threads of one parallel region that spans many steps. */
+#ifndef DELBM_SIM_SIMULATION_H
+#define DELBM_SIM_SIMULATION_H
+
+#include "base/clock.h"
+#include "scene/scene.h"
+#include "solid/discs.h"
+
+struct simulation;
+
+/* Sets up fluid at rest (density 1) and the scene's discs. The scene must outlive the simulation. */
+bool simulation_create(struct simulation **simulation, const struct scene *scene, struct status *status);
+void simulation_destroy(struct simulation *simulation);
+
+/* Advances by `steps` steps. Fails (DELBM_FAILED) when the run has diverged: a value that is not finite, or a Mach number
+ * above 0.6, found at the latest run.check steps after it arose; the message says which, where and when. */
+bool simulation_advance(struct simulation *simulation, int64_t steps, struct status *status);
+
+/* Looks for divergence now. To be called before anything is written, so that no file holds a NaN. */
+bool simulation_check(struct simulation *simulation, struct status *status);
+
+int64_t simulation_step(const struct simulation *simulation);
+const struct scene *simulation_scene(const struct simulation *simulation);
+const struct discs *simulation_discs(const struct simulation *simulation);
+
+/* Density and velocity of every cell, row by row from the bottom: arrays of size[0] * size[1]. Any may be NULL. */
+void simulation_fields(struct simulation *simulation, double *density, double *ux, double *uy);
+
+/* The figures of run.json. */
+struct simulation_report {
+  int threads;
+  const char *kernel;
+  struct stage_times times; /* STAGE_OUTPUT is the caller's to fill */
+  double mass_drift;        /* |mass - initial mass| / initial mass */
+  double momentum_drift; /* largest of the two components of the change of the conserved momentum not explained by body
+                               forces, over the fluid's mass; NAN where walls, inlets or outlets exchange momentum */
+  double max_mach;       /* largest seen at the looks for divergence */
+  int max_substeps;      /* most sub-steps that a step has taken */
+};
+void simulation_report(struct simulation *simulation, struct simulation_report *report);
+
+#endif

@@ -1,0 +1,57 @@
+#include "solid/discs.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { DOUBLE_ARRAYS = 17 };
+
+/* Carves the arrays from one block, each on a cache line of its own. */
+static void carve(struct discs *d, char *block, size_t stride)
+{
+  double **const arrays[DOUBLE_ARRAYS] = {
+      &d->radius,     &d->mass,  &d->fluid_mass, &d->inertia, &d->fluid_inertia, &d->x,
+      &d->y,          &d->angle, &d->vx,         &d->vy,      &d->omega,         &d->contact_fx,
+      &d->contact_fy, &d->fx,    &d->fy,         &d->torque,  &d->contact_torque};
+  for (size_t k = 0; k < DOUBLE_ARRAYS; k++) *arrays[k] = (double *)(void *)(block + k * stride);
+  d->motion = (uint8_t *)(block + DOUBLE_ARRAYS * stride);
+}
+
+static void set_disc(struct discs *d, size_t i, const struct disc_spec *spec)
+{
+  const double r2 = spec->radius * spec->radius;
+  d->radius[i] = spec->radius;
+  d->fluid_mass[i] = M_PI * r2;
+  d->mass[i] = spec->density * d->fluid_mass[i];
+  d->fluid_inertia[i] = d->fluid_mass[i] * r2 / 2;
+  d->inertia[i] = d->mass[i] * r2 / 2;
+  d->motion[i] = (uint8_t)spec->motion;
+  d->x[i] = spec->position[0];
+  d->y[i] = spec->position[1];
+  d->angle[i] = spec->angle;
+  d->vx[i] = spec->velocity[0];
+  d->vy[i] = spec->velocity[1];
+  d->omega[i] = spec->spin;
+  d->moving += spec->motion != DISC_FIXED;
+  d->free += spec->motion == DISC_FREE;
+}
+
+bool discs_create(struct discs *discs, const struct scene *scene, struct status *status)
+{
+  const size_t count = scene->particles.count;
+  *discs = (struct discs){.count = count};
+  if (count == 0) return true;
+  const size_t stride = (count * sizeof(double) + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE;
+  discs->block = memory_allocate(DOUBLE_ARRAYS + 1, stride, "the discs", status);
+  if (!discs->block) return false;
+  carve(discs, discs->block, stride);
+  for (size_t i = 0; i < count; i++) set_disc(discs, i, &scene->particles.discs[i]);
+  return true;
+}
+
+void discs_destroy(struct discs *discs)
+{
+  free(discs->block);
+  *discs = (struct discs){0};
+}

@@ -1,0 +1,484 @@
+#include "solid/occupation.h"
+
+#include "base/memory.h"
+#include "solid/disc_area.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Rows and columns that a disc can touch. */
+static size_t most_lines(double radius)
+{
+  return (size_t)ceil(2 * radius) + 2;
+}
+
+/* Cells that a disc can touch: those within half a cell's diagonal, and one more all round. */
+static size_t most_cells(double radius)
+{
+  return (size_t)ceil(M_PI * (radius + 1.5) * (radius + 1.5));
+}
+
+double occupation_bytes(const struct scene *scene)
+{
+  double bytes = 0;
+  for (size_t i = 0; i < scene->particles.count; i++) {
+    const double radius = scene->particles.discs[i].radius;
+    bytes += (double)most_cells(radius) * 2 * sizeof(double);
+    bytes += (double)most_lines(radius) * (sizeof(struct span) + sizeof(struct run));
+    bytes += 2 * sizeof(double) + 3 * sizeof(int32_t) + 2 * sizeof(size_t) + 2 * sizeof(uint32_t);
+  }
+  return bytes;
+}
+
+static bool allocate(struct occupation *o, size_t spans, size_t cells, struct status *status)
+{
+  const char *what = "the occupation tables";
+  const size_t n = o->discs;
+  return (o->x = memory_allocate(n, sizeof *o->x, what, status)) &&
+         (o->y = memory_allocate(n, sizeof *o->y, what, status)) &&
+         (o->column = memory_allocate(n, sizeof *o->column, what, status)) &&
+         (o->row = memory_allocate(n, sizeof *o->row, what, status)) &&
+         (o->rows = memory_allocate(n, sizeof *o->rows, what, status)) &&
+         (o->first_span = memory_allocate(n, sizeof *o->first_span, what, status)) &&
+         (o->first_cell = memory_allocate(n, sizeof *o->first_cell, what, status)) &&
+         (o->spans = memory_allocate(spans, sizeof *o->spans, what, status)) &&
+         (o->eps = memory_allocate(cells, sizeof *o->eps, what, status)) &&
+         (o->share = memory_allocate(cells, sizeof *o->share, what, status)) &&
+         (o->order = memory_allocate(n, sizeof *o->order, what, status)) &&
+         (o->band_start = memory_allocate((size_t)o->band_count + 1, sizeof *o->band_start, what, status)) &&
+         (o->bands = memory_allocate((size_t)o->band_count, sizeof *o->bands, what, status));
+}
+
+bool occupation_create(struct occupation *o, const struct scene *scene, const struct discs *discs, int reach,
+                       struct status *status)
+{
+  *o = (struct occupation){.size = {scene->domain.size[0], scene->domain.size[1]},
+                           .periodic = {scene_is_periodic(scene, 0), scene_is_periodic(scene, 1)},
+                           .three_nu = 3 * scene->fluid.viscosity,
+                           .reach = reach,
+                           .minimum = 0.95,
+                           .discs = discs->count,
+                           .band_count = (scene->domain.size[1] + BAND_ROWS - 1) / BAND_ROWS};
+  size_t spans = 0, cells = 0;
+  for (size_t i = 0; i < discs->count; i++) {
+    spans += most_lines(discs->radius[i]);
+    cells += most_cells(discs->radius[i]);
+  }
+  if (!allocate(o, spans, cells, status)) {
+    occupation_destroy(o);
+    return false;
+  }
+  spans = cells = 0;
+  for (size_t i = 0; i < discs->count; i++) {
+    o->order[i] = (uint32_t)i;
+    o->first_span[i] = spans;
+    o->first_cell[i] = cells;
+    spans += most_lines(discs->radius[i]);
+    cells += most_cells(discs->radius[i]);
+  }
+  return true;
+}
+
+void occupation_destroy(struct occupation *o)
+{
+  for (int k = 0; o->bands && k < o->band_count; k++) {
+    free(o->bands[k].runs);
+    free(o->bands[k].pairs);
+    free(o->bands[k].shared);
+  }
+  void *const arrays[] = {o->x,     o->y,   o->column, o->row,   o->rows,       o->first_span, o->first_cell,
+                          o->spans, o->eps, o->share,  o->order, o->band_start, o->band_discs, o->bands};
+  for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; k++) free(arrays[k]);
+  *o = (struct occupation){0};
+}
+
+/* eps and B of the cells of one row, between the lines `low` and `high`; `columns` are the lines x = column, column + 1, ... */
+static void paint_row(double radius, double three_nu, const struct disc_line *low, const struct disc_line *high,
+                      const struct disc_line *columns, struct span *span, double *eps, double *share)
+{
+  const bool across = low->t < 0 && high->t > 0; /* the widest chord lies inside this row */
+  const double wide = across ? radius : fmax(low->half_chord, high->half_chord);
+  const double narrow = fmin(low->half_chord, high->half_chord);
+  int first = (int)floor(-wide - columns[0].t), end = (int)ceil(wide - columns[0].t);
+  if (first < 0) first = 0; /* round-off in wide */
+  int full = (int)ceil(-narrow - columns[0].t), full_end = (int)floor(narrow - columns[0].t);
+  if (full >= full_end || narrow <= 0) full = full_end = end;
+  span->first = first;
+  span->count = end - first;
+  for (int c = first; c < end; c++) {
+    double area = 1;
+    if (c < full || c >= full_end) {
+      area = disc_corner_area(radius, &columns[c], low) - disc_corner_area(radius, &columns[c + 1], low) -
+             disc_corner_area(radius, &columns[c], high) + disc_corner_area(radius, &columns[c + 1], high);
+      area = fmin(fmax(area, 0), 1); /* round-off */
+    }
+    eps[c - first] = area;
+    share[c - first] = occupation_weight(area, three_nu);
+  }
+}
+
+/* Lines are taken at their distance from the centre, computed as line - centre: the same bits wherever they are needed. */
+static void paint_disc(struct occupation *o, size_t disc, double radius, double x, double y, struct disc_line *columns)
+{
+  const int column = (int)floor(x - radius), column_end = (int)ceil(x + radius);
+  const int row = (int)floor(y - radius), row_end = (int)ceil(y + radius);
+  for (int c = column; c <= column_end; c++) columns[c - column] = disc_line_at(radius, c - x);
+  size_t cell = o->first_cell[disc];
+  struct disc_line low = disc_line_at(radius, row - y);
+  for (int r = row; r < row_end; r++) {
+    struct span *span = &o->spans[o->first_span[disc] + (size_t)(r - row)];
+    const struct disc_line high = disc_line_at(radius, r + 1 - y);
+    span->cell = cell;
+    paint_row(radius, o->three_nu, &low, &high, columns, span, o->eps + cell, o->share + cell);
+    cell += (size_t)span->count;
+    low = high;
+  }
+  o->x[disc] = x;
+  o->y[disc] = y;
+  o->column[disc] = column;
+  o->row[disc] = row;
+  o->rows[disc] = row_end - row;
+}
+
+/* First the shares that other owners reduced are made whole again; then discs that moved are painted. */
+static bool paint(struct occupation *o, const struct discs *discs, struct status *status)
+{
+  bool failed = false;
+#pragma omp for schedule(static)
+  for (int k = 0; k < o->band_count; k++) {
+    for (size_t s = 0; s < o->bands[k].shared_count; s++) {
+      const size_t cell = o->bands[k].shared[s];
+      o->share[cell] = occupation_weight(o->eps[cell], o->three_nu);
+    }
+    o->bands[k].shared_count = 0;
+  }
+  struct disc_line *columns = NULL;
+  size_t capacity = 0;
+#pragma omp for schedule(dynamic, 8) nowait
+  for (size_t i = 0; i < o->discs; i++) {
+    if (failed || (o->painted && o->x[i] == discs->x[i] && o->y[i] == discs->y[i])) continue;
+    if (!memory_grow(&columns, &capacity, most_lines(discs->radius[i]) + 1, sizeof *columns, "a disc's lines", status))
+      failed = true;
+    else
+      paint_disc(o, i, discs->radius[i], discs->x[i], discs->y[i], columns);
+  }
+  free(columns);
+  return !failed;
+}
+
+/* Insertion sort: discs keep their order from step to step but for a few. */
+static void sort_by_x(struct occupation *o)
+{
+  for (size_t k = 1; k < o->discs; k++) {
+    const uint32_t disc = o->order[k];
+    size_t at = k;
+    for (; at > 0; at--) {
+      const uint32_t before = o->order[at - 1];
+      if (o->x[before] < o->x[disc] || (o->x[before] == o->x[disc] && before < disc)) break;
+      o->order[at] = before;
+    }
+    o->order[at] = disc;
+  }
+}
+
+struct order_key {
+  double x;
+  uint32_t disc;
+};
+
+static int compare_keys(const void *a, const void *b)
+{
+  const struct order_key *l = a, *r = b;
+  if (l->x != r->x) return l->x < r->x ? -1 : 1;
+  return l->disc < r->disc ? -1 : l->disc > r->disc;
+}
+
+static bool sort_from_scratch(struct occupation *o, struct status *status)
+{
+  struct order_key *keys = memory_allocate(o->discs, sizeof *keys, "sorting the discs", status);
+  if (!keys) return false;
+  for (size_t i = 0; i < o->discs; i++) keys[i] = (struct order_key){o->x[i], (uint32_t)i};
+  qsort(keys, o->discs, sizeof *keys, compare_keys);
+  for (size_t i = 0; i < o->discs; i++) o->order[i] = keys[i].disc;
+  free(keys);
+  return true;
+}
+
+/* Calls for the bands that the disc's rows (and reach) lie in: sets first..last, unwrapped; returns false if there are none. */
+static bool disc_bands(const struct occupation *o, size_t disc, int *first, int *last)
+{
+  int low = o->row[disc] - o->reach, high = o->row[disc] + o->rows[disc] - 1 + o->reach;
+  const int ny = o->size[1];
+  if (!o->periodic[1]) {
+    if (low < 0) low = 0;
+    if (high >= ny) high = ny - 1;
+    if (low > high) return false;
+  }
+  *first = low;
+  *last = high;
+  return true;
+}
+
+static int wrap(int at, int n)
+{
+  return at < 0 ? at + n : at >= n ? at - n : at;
+}
+
+/* Adds the disc to the count (fill = false) or to the list (fill = true) of each band that it touches, once. */
+static void enter_bands(struct occupation *o, uint32_t disc, bool fill)
+{
+  int low, high, previous = -1, opening = -1;
+  if (!disc_bands(o, disc, &low, &high)) return;
+  for (int y = low; y <= high;) {
+    const int row = wrap(y, o->size[1]), band = row / BAND_ROWS;
+    if (band != previous && band != opening) {
+      if (fill)
+        o->band_discs[o->band_start[band + 1]++] = disc;
+      else
+        o->band_start[band + 1]++;
+      if (opening < 0) opening = band;
+      previous = band;
+    }
+    const int band_end = (band + 1) * BAND_ROWS < o->size[1] ? (band + 1) * BAND_ROWS : o->size[1];
+    y += band_end - row;
+  }
+}
+
+/* Lists the discs of every band, along x. The end of band k doubles as the place where the next of k + 1 is entered. */
+static bool list_bands(struct occupation *o, struct status *status)
+{
+  memset(o->band_start, 0, ((size_t)o->band_count + 1) * sizeof *o->band_start);
+  for (size_t k = 0; k < o->discs; k++) enter_bands(o, o->order[k], false);
+  size_t total = 0;
+  for (int b = 1; b <= o->band_count; b++) {
+    const size_t count = o->band_start[b];
+    o->band_start[b] = total;
+    total += count;
+  }
+  if (!memory_grow(&o->band_discs, &o->band_discs_capacity, total, sizeof *o->band_discs, "the bands' discs", status))
+    return false;
+  for (size_t k = 0; k < o->discs; k++) enter_bands(o, o->order[k], true);
+  return true;
+}
+
+/* The span that row k of the disc offers to the search for pairs: its own, or beyond its ends the one next to it. */
+static void reach_columns(const struct occupation *o, size_t disc, int k, int *first, int *end)
+{
+  const struct span *spans = o->spans + o->first_span[disc];
+  const int rows = o->rows[disc], reach = o->reach;
+  *first = INT32_MAX;
+  *end = INT32_MIN;
+  for (int r = k - reach; r <= k + reach; r++) {
+    if (r < 0 || r >= rows) continue;
+    if (spans[r].first - reach < *first) *first = spans[r].first - reach;
+    if (spans[r].first + spans[r].count + reach > *end) *end = spans[r].first + spans[r].count + reach;
+  }
+}
+
+/* One piece of a run: columns moved by `shift` into the box and cut to it. False if nothing of it, nor its reach, is inside. */
+static bool cut_run(const struct occupation *o, struct run *run, int shift, int first, int count, int reach_first,
+                    int reach_end)
+{
+  const int nx = o->size[0];
+  const int low = first + shift < 0 ? 0 : first + shift;
+  const int high = first + shift + count > nx ? nx : first + shift + count;
+  const int reach_low = reach_first + shift < 0 ? 0 : reach_first + shift;
+  const int reach_high = reach_end + shift > nx ? nx : reach_end + shift;
+  if (reach_low >= reach_high) return false;
+  const int cut = low - (first + shift);
+  run->reach_first = reach_low;
+  run->reach_end = reach_high;
+  run->x = low < high ? low : reach_low;
+  run->n = low < high ? high - low : 0;
+  run->rx += cut;
+  run->cell += (size_t)cut;
+  return true;
+}
+
+int occupation_runs(const struct occupation *o, size_t disc, int k, struct run runs[2], int *y)
+{
+  int row = o->row[disc] + k;
+  if (o->periodic[1])
+    row = wrap(row, o->size[1]);
+  else if (row < 0 || row >= o->size[1])
+    return 0;
+  *y = row;
+  int reach_first, reach_end;
+  reach_columns(o, disc, k, &reach_first, &reach_end);
+  const bool own = k >= 0 && k < o->rows[disc];
+  const struct span none = {.first = reach_first}, *span = own ? &o->spans[o->first_span[disc] + (size_t)k] : &none;
+  const int column = o->column[disc], first = column + span->first;
+  const struct run whole = {.disc = (uint32_t)disc,
+                            .rx = first + 0.5 - o->x[disc],
+                            .ry = o->row[disc] + k + 0.5 - o->y[disc],
+                            .cell = span->cell};
+  int count = 0;
+  const int shifts[3] = {0, o->size[0], -o->size[0]};
+  for (int s = 0; s < (o->periodic[0] ? 3 : 1) && count < 2; s++) {
+    runs[count] = whole;
+    count += cut_run(o, &runs[count], shifts[s], first, span->count, column + reach_first, column + reach_end);
+  }
+  return count;
+}
+
+static int run_before(const struct run *l, const struct run *r)
+{
+  return l->reach_first < r->reach_first || (l->reach_first == r->reach_first && l->disc < r->disc);
+}
+
+/* The runs of the band's rows: counted, placed, and each row put in order (nearly so already, as discs come along x). */
+static bool collect_runs(struct occupation *o, int index, struct status *status)
+{
+  struct band *band = &o->bands[index];
+  const bool periodic = o->periodic[1];
+  const int first_row = index * BAND_ROWS;
+  const int end_row = first_row + BAND_ROWS < o->size[1] ? first_row + BAND_ROWS : o->size[1];
+  size_t count[BAND_ROWS + 1] = {0};
+  for (int pass = 0; pass < 2; pass++) {
+    for (size_t d = o->band_start[index]; d < o->band_start[index + 1]; d++) {
+      const uint32_t disc = o->band_discs[d];
+      for (int image = periodic ? -1 : 0; image <= (periodic ? 1 : 0); image++) {
+        const int low = first_row + image * o->size[1] - o->row[disc], high = low + end_row - first_row;
+        const int k_end = high < o->rows[disc] + o->reach ? high : o->rows[disc] + o->reach;
+        for (int k = low > -o->reach ? low : -o->reach; k < k_end; k++) {
+          struct run runs[2];
+          int y;
+          const int n = occupation_runs(o, disc, k, runs, &y);
+          if (n == 0) continue;
+          if (pass == 0)
+            count[y - first_row + 1] += (size_t)n;
+          else
+            for (int r = 0; r < n; r++) band->runs[count[y - first_row]++] = runs[r];
+        }
+      }
+    }
+    if (pass == 1) break;
+    for (int r = 0; r < BAND_ROWS; r++) count[r + 1] += count[r];
+    memcpy(band->row_start, count, sizeof count);
+    if (!memory_grow(&band->runs, &band->run_capacity, count[BAND_ROWS], sizeof *band->runs, "a band's runs", status))
+      return false;
+  }
+  band->run_count = band->row_start[BAND_ROWS];
+  for (int r = 0; r < BAND_ROWS; r++) {
+    struct run *row = band->runs + band->row_start[r];
+    const size_t n = band->row_start[r + 1] - band->row_start[r];
+    for (size_t k = 1; k < n; k++) {
+      const struct run run = row[k];
+      size_t at = k;
+      for (; at > 0 && run_before(&run, &row[at - 1]); at--) row[at] = row[at - 1];
+      row[at] = run;
+    }
+  }
+  return true;
+}
+
+static bool covers(const struct run *run, int x)
+{
+  return x >= run->x && x < run->x + run->n;
+}
+
+static size_t cell_of(const struct run *run, int x)
+{
+  return run->cell + (size_t)(x - run->x);
+}
+
+/* Shares a cell among its owners: runs[0], runs[next] and perhaps some after that. */
+static bool share_cell(struct occupation *o, struct band *band, const struct run *runs, size_t count, int x,
+                       struct status *status)
+{
+  double total = 0;
+  size_t owners = 0, end = count;
+  for (size_t r = 0; r < count; r++) {
+    if (runs[r].reach_first > x) {
+      end = r;
+      break;
+    }
+    if (!covers(&runs[r], x)) continue;
+    total += o->eps[cell_of(&runs[r], x)];
+    owners++;
+  }
+  if (total <= 0) return true;
+  if (!memory_grow(&band->shared, &band->shared_capacity, band->shared_count + owners, sizeof *band->shared,
+                   "a band's shared cells", status))
+    return false;
+  const double weight = occupation_weight(fmin(1, total), o->three_nu) / total;
+  for (size_t r = 0; r < end; r++) {
+    if (!covers(&runs[r], x)) continue;
+    const size_t cell = cell_of(&runs[r], x);
+    o->share[cell] = o->eps[cell] * weight;
+    band->shared[band->shared_count++] = cell;
+  }
+  band->shared_cells++;
+  return true;
+}
+
+/* True if a run before runs[second], other than runs[first], covers the cell: it is then shared on their account. */
+static bool shared_earlier(const struct run *row, size_t first, size_t second, int x)
+{
+  for (size_t r = 0; r < second; r++)
+    if (r != first && covers(&row[r], x)) return true;
+  return false;
+}
+
+/* Two runs whose reaches overlap: their discs are a candidate, and the cells that both cover are shared. */
+static bool meet(struct occupation *o, struct band *band, const struct run *row, size_t count, size_t first,
+                 size_t second, struct status *status)
+{
+  const struct run *l = &row[first], *r = &row[second];
+  double area = 0;
+  const int low = l->x > r->x ? l->x : r->x;
+  const int high = l->x + l->n < r->x + r->n ? l->x + l->n : r->x + r->n;
+  for (int x = low; x < high; x++) {
+    const double eps_l = o->eps[cell_of(l, x)], eps_r = o->eps[cell_of(r, x)];
+    if (eps_l > 0 && eps_r > 0) area += fmax(0, eps_l + eps_r - o->minimum);
+    if (!shared_earlier(row, first, second, x) && !share_cell(o, band, row + first, count - first, x, status))
+      return false;
+  }
+  if (l->disc == r->disc) return true;
+  if (!memory_grow(&band->pairs, &band->pair_capacity, band->pair_count + 1, sizeof *band->pairs, "a band's pairs",
+                   status))
+    return false;
+  band->pairs[band->pair_count++] = (struct near_pair){
+      .a = l->disc < r->disc ? l->disc : r->disc, .b = l->disc < r->disc ? r->disc : l->disc, .cells_area = area};
+  return true;
+}
+
+static bool find_shared(struct occupation *o, int index, struct status *status)
+{
+  struct band *band = &o->bands[index];
+  band->pair_count = band->shared_cells = 0;
+  for (int k = 0; k < BAND_ROWS; k++) {
+    const struct run *row = band->runs + band->row_start[k];
+    const size_t count = band->row_start[k + 1] - band->row_start[k];
+    for (size_t l = 0; l + 1 < count; l++)
+      for (size_t r = l + 1; r < count && row[r].reach_first < row[l].reach_end; r++)
+        if (!meet(o, band, row, count, l, r, status)) return false;
+  }
+  return true;
+}
+
+void stage_occupation(struct occupation *o, const struct discs *discs, struct team *team)
+{
+  struct status status;
+  if (!paint(o, discs, &status)) team_fail(team, &status);
+#pragma omp barrier
+#pragma omp single
+  {
+    if (o->painted)
+      sort_by_x(o);
+    else if (!sort_from_scratch(o, &status))
+      team_fail(team, &status);
+    if (!team->failed && !list_bands(o, &status)) team_fail(team, &status);
+    team->stop = team->failed;
+  }
+  if (team->stop) return;
+#pragma omp for schedule(static)
+  for (int k = 0; k < o->band_count; k++)
+    if (!collect_runs(o, k, &status) || !find_shared(o, k, &status)) team_fail(team, &status);
+#pragma omp single
+  {
+    o->painted = true;
+    team->stop = team->failed;
+  }
+}

@@ -1,0 +1,113 @@
+/* Occupation: which cells each disc covers, and how much of them (stage 1 of the step).
+ *
+ * A disc is convex, so it covers one run of cells in each row. Its occupation fractions eps lie in a table of its own, run after
+ * run; nothing is as large as the box. The step then needs, per row, the runs of all discs from left to right:
+ *
+ *   1. paint     per disc, in parallel: eps of its cells from line tables (disc_area.h), B(eps) (19) as its share.
+ *   2. rows      per band of rows, in parallel: the runs of the band's rows, sorted by first cell. Runs that overlap share cells;
+ *                there B follows from the total eps = min(1, sum eps_p), of which owner p has the share w_p B with
+ *                w_p = eps_p/sum eps (22), for any number of owners. Two discs that share a cell are a candidate for contact.
+ *
+ * A band's runs, and the shares of cells in its rows, are written by the one thread that has the band: no races. All orders
+ * (discs along x, runs in a row, owners of a cell, bands) follow from positions and indices alone, never from threads or
+ * history: results are the same for any number of threads and after a restart.
+ *
+ * Discs may reach beyond walls (their runs are cut there) and across periodic sides (their runs wrap). */
+#ifndef DELBM_SOLID_OCCUPATION_H
+#define DELBM_SOLID_OCCUPATION_H
+
+#include "base/team.h"
+#include "solid/discs.h"
+
+enum { BAND_ROWS = 16 };
+
+/* Cells of one disc in one row of the box, wrapped and cut: x .. x + n - 1. Runs without cells (n = 0) only announce that the
+ * disc is within reach. */
+struct run {
+  int32_t x, n;
+  int32_t reach_first, reach_end; /* cells that make discs candidates: the run's own, widened by the reach */
+  uint32_t disc;
+  double rx, ry; /* from the disc's centre to the centre of the first cell */
+  size_t cell;   /* of the first cell, in eps[] and share[] */
+};
+
+/* Two discs, lower index first, that come within reach in a row, and what (23) adds to their overlap area there. */
+struct near_pair {
+  uint32_t a, b;
+  double cells_area;
+};
+
+struct band {
+  struct run *runs;
+  size_t run_count, run_capacity;
+  size_t row_start[BAND_ROWS + 1]; /* runs of the band's row k: row_start[k] .. row_start[k + 1] */
+  struct near_pair *pairs;
+  size_t pair_count, pair_capacity;
+  size_t *shared; /* cells whose share is not B(eps) */
+  size_t shared_count, shared_capacity;
+  size_t shared_cells; /* cells of the band with more than one owner */
+};
+
+/* The cells of a disc in one row of its own: columns first .. first + count - 1 from its left edge. */
+struct span {
+  int32_t first, count;
+  size_t cell;
+};
+
+struct occupation {
+  int size[2];
+  bool periodic[2];
+  double three_nu; /* tau - 1/2 of (19) */
+  int reach;       /* cells by which runs are widened in the search for pairs, 0 or 1 */
+  double minimum;  /* A_m of (23) */
+
+  size_t discs;
+  bool painted;       /* at least once */
+  double *x, *y;      /* centre of each disc when it was painted */
+  int32_t *column;    /* of its leftmost cell, before wrapping */
+  int32_t *row;       /* of its lowest cell */
+  int32_t *rows;      /* how many it covers */
+  size_t *first_span; /* its spans in spans[] */
+  size_t *first_cell; /* its cells in eps[] and share[] */
+  struct span *spans;
+  double *eps, *share;
+
+  uint32_t *order;      /* discs by x, then index */
+  size_t *band_start;   /* [bands + 1] discs of band k: band_discs[band_start[k]] .. */
+  uint32_t *band_discs; /* in the order above */
+  size_t band_discs_capacity;
+  struct band *bands;
+  int band_count;
+};
+
+/* Sets up tables for the scene's discs. `reach` as above. */
+bool occupation_create(struct occupation *occupation, const struct scene *scene, const struct discs *discs, int reach,
+                       struct status *status);
+void occupation_destroy(struct occupation *occupation);
+
+/* Bytes that occupation_create would take. */
+double occupation_bytes(const struct scene *scene);
+
+/* The stage, called by all threads of a parallel region or outside of one. Discs that have not moved since they were painted are
+ * not painted again. Fails if memory runs out. */
+void stage_occupation(struct occupation *occupation, const struct discs *discs, struct team *team);
+
+/* The runs of row y, from left to right. */
+static inline const struct run *occupation_row(const struct occupation *o, int y, size_t *count)
+{
+  const struct band *band = &o->bands[y / BAND_ROWS];
+  const size_t start = band->row_start[y % BAND_ROWS];
+  *count = band->row_start[y % BAND_ROWS + 1] - start;
+  return band->runs + start;
+}
+
+/* Cuts span `s` (of the disc's row number k) to the box: at most two runs, and none where the row lies outside. Returns how many. */
+int occupation_runs(const struct occupation *o, size_t disc, int k, struct run runs[2], int *y);
+
+/* B of a cell with occupation fraction eps (19). */
+static inline double occupation_weight(double eps, double three_nu)
+{
+  return eps * three_nu / ((1 - eps) + three_nu);
+}
+
+#endif

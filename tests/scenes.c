@@ -1,0 +1,48 @@
+#include "scenes.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+struct scene scene_box(int nx, int ny, double viscosity, enum sides sides)
+{
+  struct scene scene = {0};
+  scene.domain.size[0] = nx;
+  scene.domain.size[1] = ny;
+  for (int k = 0; k < SIDE_COUNT; k++) scene.domain.side[k].type = sides == SIDES_PERIODIC ? SIDE_PERIODIC : SIDE_WALL;
+  scene.fluid.viscosity = viscosity;
+  scene.fluid.collision = COLLISION_MRT;
+  scene.fluid.rates = (struct rates){.nu = rate_from_viscosity(viscosity), .e = 1.4, .q = 1.2};
+  scene.coupling.form = FORM_OWEN;
+  scene.contact.stiffness = 0.25;
+  scene.contact.alpha = 0.3;
+  scene.contact.damping = 0.34;
+  scene.contact.steps_per_contact = 20;
+  scene.run.check = 50;
+  return scene;
+}
+
+void scene_use_magic(struct scene *scene)
+{
+  scene->fluid.rates.q = rate_from_magic(3.0 / 16, scene->fluid.viscosity);
+}
+
+struct disc_spec *scene_add_disc(struct scene *scene, double radius, double density, double x, double y)
+{
+  const size_t count = scene->particles.count + 1;
+  struct disc_spec *discs = realloc(scene->particles.discs, count * sizeof *discs);
+  if (!discs) abort();
+  scene->particles.discs = discs;
+  scene->particles.count = scene->particles.listed = count;
+  discs[count - 1] = (struct disc_spec){.radius = radius, .density = density, .position = {x, y}};
+  return &discs[count - 1];
+}
+
+struct scene scene_square_array(double radius, double solid_fraction, double viscosity, double force)
+{
+  /* a whole number of cells; the radius gives way, so that the fraction is exact */
+  const int size = (int)lround(sqrt(M_PI * radius * radius / solid_fraction));
+  struct scene scene = scene_box(size, size, viscosity, SIDES_PERIODIC);
+  scene.fluid.force[0] = force;
+  scene_add_disc(&scene, size * sqrt(solid_fraction / M_PI), 1, size / 2.0, size / 2.0)->motion = DISC_FIXED;
+  return scene;
+}

@@ -1,0 +1,22 @@
+/* Scenes built in code, shared by tests and benchmarks. */
+#ifndef DELBM_TESTS_SCENES_H
+#define DELBM_TESTS_SCENES_H
+
+#include "scene/scene.h"
+
+enum sides { SIDES_PERIODIC, SIDES_CLOSED };
+
+/* A box of fluid at rest with the program's defaults: mrt 1.4/1.2, owen, implicit, lens, no discs, no forces. */
+struct scene scene_box(int nx, int ny, double viscosity, enum sides sides);
+
+/* Sets s_q from the magic parameter 3/16. */
+void scene_use_magic(struct scene *scene);
+
+/* Adds a free disc at rest; returns it for further settings, valid until the next one is added. */
+struct disc_spec *scene_add_disc(struct scene *scene, double radius, double density, double x, double y);
+
+/* One fixed disc in a periodic square cell, driven by a body force: the square array of cylinders. The radius is about the wanted
+ * one, the solid fraction exact. */
+struct scene scene_square_array(double radius, double solid_fraction, double viscosity, double force);
+
+#endif

@@ -1,0 +1,579 @@
+/* What a run leaves behind: particles.csv, pictures, run.json, its line on stdout, and the folder that holds them. */
+#include "output/csv.h"
+#include "output/file.h"
+#include "output/picture.h"
+#include "output/progress.h"
+#include "output/recorder.h"
+#include "output/summary.h"
+
+#include <criterion/criterion.h>
+#include <ftw.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { DISCS = 2 };
+
+static char scratch[] = "/tmp/delbm-test-XXXXXX";
+static struct status status;
+
+static void make_scratch(void)
+{
+  cr_assert_not_null(mkdtemp(scratch));
+}
+
+static int remove_entry(const char *path, const struct stat *info, int type, struct FTW *walk)
+{
+  (void)info;
+  (void)type;
+  (void)walk;
+  return remove(path);
+}
+
+static void remove_scratch(void)
+{
+  nftw(scratch, remove_entry, 16, FTW_DEPTH | FTW_PHYS);
+}
+
+TestSuite(csv, .init = make_scratch, .fini = remove_scratch);
+TestSuite(summary, .init = make_scratch, .fini = remove_scratch);
+TestSuite(picture, .init = make_scratch, .fini = remove_scratch);
+TestSuite(recorder, .init = make_scratch, .fini = remove_scratch);
+
+static char *in_scratch(const char *name)
+{
+  char *path = file_join(scratch, name, &status);
+  cr_assert_not_null(path);
+  return path;
+}
+
+/* All of a file, ended by a zero. */
+static char *contents(const char *path, size_t *length)
+{
+  FILE *file = fopen(path, "rb");
+  cr_assert_not_null(file, "%s is there", path);
+  char *text = calloc(1, 1 << 24);
+  *length = fread(text, 1, (1 << 24) - 1, file);
+  fclose(file);
+  return text;
+}
+
+static void write_file(const char *path, const char *text)
+{
+  FILE *file = fopen(path, "wb");
+  cr_assert_not_null(file);
+  fputs(text, file);
+  fclose(file);
+}
+
+/* Quantities of DISCS discs, all 0 but the radius of 10, in the order of the columns of particles.csv. */
+struct some_discs {
+  double columns[12][DISCS];
+  double radius[DISCS];
+  struct discs discs;
+};
+
+static struct discs *some_discs(struct some_discs *some)
+{
+  memset(some, 0, sizeof *some);
+  for (int k = 0; k < DISCS; k++) some->radius[k] = 10;
+  some->discs.count = DISCS;
+  some->discs.radius = some->radius;
+  double **arrays[] = {&some->discs.x,          &some->discs.y,          &some->discs.vx,
+                       &some->discs.vy,         &some->discs.omega,      &some->discs.angle,
+                       &some->discs.fx,         &some->discs.fy,         &some->discs.torque,
+                       &some->discs.contact_fx, &some->discs.contact_fy, &some->discs.contact_torque};
+  for (int k = 0; k < 12; k++) *arrays[k] = some->columns[k];
+  return &some->discs;
+}
+
+Test(csv, starts_with_the_header_that_scripts_rely_on)
+{
+  struct csv *csv;
+  size_t length;
+  char *path = in_scratch("particles.csv");
+  cr_assert(csv_open(&csv, path, &status), "%s", status.message);
+  cr_assert(csv_close(&csv, &status));
+  cr_assert_null(csv);
+  cr_assert_str_eq(contents(path, &length),
+                   "step,id,x,y,vx,vy,omega,angle,fx,fy,torque,contact_fx,contact_fy,contact_torque\n");
+}
+
+Test(csv, numbers_read_back_as_they_were)
+{
+  struct some_discs some;
+  struct discs *discs = some_discs(&some);
+  const double awkward[] = {0.1,
+                            -1. / 3,
+                            2.2250738585072014e-308,
+                            -1.7976931348623157e308,
+                            4.9406564584124654e-324,
+                            0,
+                            -0.,
+                            1e22,
+                            123456789.123456789,
+                            -5e-324,
+                            1,
+                            M_PI};
+  for (int k = 0; k < 12; k++) some.columns[k][1] = awkward[k];
+  struct csv *csv;
+  char *path = in_scratch("particles.csv");
+  cr_assert(csv_open(&csv, path, &status));
+  cr_assert(csv_write(csv, INT64_MAX, discs, &status), "%s", status.message);
+  cr_assert(csv_close(&csv, &status));
+  size_t length;
+  char *row = strstr(contents(path, &length), "\n9223372036854775807,1,");
+  cr_assert_not_null(row);
+  row = strchr(row, ',') + 2;
+  for (int k = 0; k < 12; k++) {
+    cr_assert_eq(*row, ',');
+    double back = strtod(row + 1, &row);
+    cr_assert(memcmp(&back, &awkward[k], sizeof back) == 0, "column %d: %.17g is not %.17g", k, back, awkward[k]);
+  }
+  cr_assert_str_eq(row, "\n");
+}
+
+Test(csv, what_was_written_is_in_the_file_before_it_is_closed)
+{
+  struct some_discs some;
+  struct csv *csv;
+  size_t length;
+  char *path = in_scratch("particles.csv");
+  cr_assert(csv_open(&csv, path, &status));
+  cr_assert(csv_write(csv, 3, some_discs(&some), &status));
+  cr_assert_str_eq(strchr(contents(path, &length), '\n'),
+                   "\n3,0,0,0,0,0,0,0,0,0,0,0,0,0\n3,1,0,0,0,0,0,0,0,0,0,0,0,0\n");
+  csv_close(&csv, &status);
+}
+
+Test(csv, a_number_that_is_not_finite_is_refused_with_its_whole_snapshot)
+{
+  struct some_discs some;
+  struct discs *discs = some_discs(&some);
+  discs->omega[1] = NAN;
+  struct csv *csv;
+  size_t length;
+  char *path = in_scratch("particles.csv");
+  cr_assert(csv_open(&csv, path, &status));
+  cr_assert_not(csv_write(csv, 7, discs, &status));
+  cr_assert_eq(status.code, DELBM_FAILED);
+  cr_assert_str_eq(status.message, "step 7, disc 1: omega is nan");
+  discs->omega[1] = 0;
+  cr_assert(csv_write(csv, 8, discs, &status));
+  csv_close(&csv, &status);
+  cr_assert_eq(strncmp(strchr(contents(path, &length), '\n'), "\n8,0,", 5), 0);
+}
+
+Test(csv, an_unwritable_place_is_an_input_output_error)
+{
+  struct csv *csv;
+  write_file(in_scratch("file"), "");
+  cr_assert_not(csv_open(&csv, in_scratch("file/particles.csv"), &status));
+  cr_assert_eq(status.code, DELBM_IO);
+  cr_assert_not_null(strstr(status.message, "file/particles.csv: Not a directory"), "%s", status.message);
+  cr_assert_null(csv);
+}
+
+Test(csv, a_full_disk_is_an_input_output_error)
+{
+  struct csv *csv;
+  cr_assert_not(csv_open(&csv, "/dev/full", &status));
+  cr_assert_eq(status.code, DELBM_IO);
+  cr_assert_not_null(strstr(status.message, "/dev/full: No space left on device"), "%s", status.message);
+}
+
+static struct scene some_scene(void)
+{
+  struct scene scene = {.title = "Title", .name = "name"};
+  scene.domain.size[0] = 20;
+  scene.domain.size[1] = 10;
+  scene.run.steps = 100;
+  return scene;
+}
+
+static struct summary some_summary(const struct scene *scene)
+{
+  return (struct summary){.scene = scene,
+                          .steps = 50,
+                          .seconds = 2,
+                          .report = {.threads = 3, .kernel = "plain", .mass_drift = 0.5, .momentum_drift = NAN}};
+}
+
+static char *run_json(const struct summary *summary)
+{
+  size_t length;
+  char *path = in_scratch("run.json");
+  cr_assert(summary_write(summary, path, &status), "%s", status.message);
+  return contents(path, &length);
+}
+
+static char *line_of(const struct summary *summary)
+{
+  char *line;
+  size_t length;
+  FILE *stream = open_memstream(&line, &length);
+  summary_print(summary, stream);
+  fclose(stream);
+  return line;
+}
+
+static void assert_holds(const char *text, const char *part)
+{
+  cr_assert_not_null(strstr(text, part), "'%s' is in: %s", part, text);
+}
+
+static void assert_starts(const char *text, const char *start)
+{
+  cr_assert_eq(strncmp(text, start, strlen(start)), 0, "'%s' starts: %s", start, text);
+}
+
+Test(summary, run_json_holds_the_figures)
+{
+  struct scene scene = some_scene();
+  struct summary summary = some_summary(&scene);
+  summary.report.times.seconds[STAGE_OUTPUT] = 0.25;
+  char *json = run_json(&summary);
+  assert_starts(json, "{\n  \"status\": \"done\",\n  \"steps\": 50,\n");
+  assert_holds(json, "\n  \"mlups\": 0.0050000000000000001,\n");
+  assert_holds(json, "\n  \"threads\": 3,\n  \"kernel\": \"plain\",\n  \"precision\": \"double\",\n  \"stages\": {\n");
+  assert_holds(json, "\n    \"output\": 0.25\n  },\n  \"mass_drift\": 0.5,\n");
+  assert_holds(json, "\n  \"title\": \"Title\"\n}\n");
+}
+
+Test(summary, a_figure_that_is_not_known_is_null_and_a_dash)
+{
+  struct scene scene = some_scene();
+  struct summary summary = some_summary(&scene);
+  assert_holds(run_json(&summary), "\"momentum_drift\": null,\n");
+  assert_holds(line_of(&summary), " momentum_drift=- ");
+}
+
+Test(summary, only_a_run_that_is_not_done_has_a_message)
+{
+  struct scene scene = some_scene();
+  struct summary summary = some_summary(&scene);
+  cr_assert_null(strstr(run_json(&summary), "message"));
+  summary.outcome = OUTCOME_DIVERGED;
+  summary.message = "density is nan";
+  assert_holds(run_json(&summary), "\"status\": \"diverged\",\n  \"message\": \"density is nan\",\n");
+}
+
+Test(summary, text_is_escaped_for_json)
+{
+  struct scene scene = some_scene();
+  struct summary summary = some_summary(&scene);
+  scene.title = "a \"b\" \\ c/d\n\t\x01 µ € 😀";
+  assert_holds(run_json(&summary), "\"title\": \"a \\\"b\\\" \\\\ c/d\\u000a\\u0009\\u0001 µ € 😀\"\n");
+  scene.title = "\xff[\xc3]\xe0\x80\x80\xed\xa0\x80\xf4\x90\x80\x80\xc3";
+  assert_holds(run_json(&summary),
+               "\"title\": \"\\ufffd[\\ufffd]\\ufffd\\ufffd\\ufffd\\ufffd\\ufffd\\ufffd\\ufffd\\ufffd"
+               "\\ufffd\\ufffd\\ufffd\"\n");
+}
+
+Test(summary, the_line_is_one_line_of_pairs)
+{
+  struct scene scene = some_scene();
+  struct summary summary = some_summary(&scene);
+  summary.outcome = OUTCOME_INTERRUPTED;
+  summary.message = "two\nlines";
+  char *line = line_of(&summary);
+  const char *start =
+      "delbm: status=interrupted steps=50 seconds=2 mlups=0.005 threads=3 kernel=plain precision=double "
+      "occupation=0 contact=0 exchange=0 sweep=0 boundary=0 output=0 mass_drift=0.5 momentum_drift=- ";
+  assert_starts(line, start);
+  cr_assert_eq(strchr(line, '\n'), line + strlen(line) - 1);
+}
+
+Test(summary, a_failed_write_keeps_the_earlier_file_and_leaves_no_other)
+{
+  struct scene scene = some_scene();
+  struct summary summary = some_summary(&scene);
+  write_file(in_scratch("file"), "");
+  cr_assert_not(summary_write(&summary, in_scratch("file/run.json"), &status));
+  cr_assert_eq(status.code, DELBM_IO);
+  cr_assert(file_make_directory(in_scratch("run.json/in the way"), &status));
+  cr_assert_not(summary_write(&summary, in_scratch("run.json"), &status));
+  cr_assert_eq(status.code, DELBM_IO);
+  cr_assert_neq(access(in_scratch("run.json/in the way"), F_OK), -1);
+  cr_assert_eq(access(in_scratch("run.json.tmp"), F_OK), -1);
+}
+
+Test(progress, time_left_is_told_in_the_unit_that_suits_it)
+{
+  const struct {
+    double seconds;
+    const char *text;
+  } cases[] = {{0, "0:00"},         {65.4, "1:05"},          {59.6, "1:00"},  {3599, "59:59"}, {7200, "2:00:00"},
+               {86399, "23:59:59"}, {273906, "3d 04:05:06"}, {INFINITY, "-"}, {NAN, "-"},      {-1, "-"},
+               {1e300, "-"}};
+  for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+    char text[PROGRESS_TIME];
+    progress_time(text, cases[k].seconds);
+    cr_expect_str_eq(text, cases[k].text);
+  }
+}
+
+/* What a run of 1000 steps in steps of `chunk` says. */
+static char *lines_of_progress(enum progress_style style, int chunk)
+{
+  char *text;
+  size_t length;
+  FILE *stream = open_memstream(&text, &length);
+  struct progress progress;
+  progress_start(&progress, style, stream, 1000, 1e4);
+  for (int step = chunk; step <= 1000; step += chunk) progress_update(&progress, step);
+  progress_finish(&progress, 1000);
+  fclose(stream);
+  return text;
+}
+
+Test(progress, lines_come_at_the_quarters)
+{
+  char *text = lines_of_progress(PROGRESS_LINES, 1);
+  int count = 0;
+  for (char *c = text; (c = strchr(c, '\n')); c++) count++;
+  cr_assert_eq(count, 5, "%s", text);
+  const char *const shares[] = {"  0 %  0/1000 ", " 25 %  250/", " 50 %  500/", " 75 %  750/", "100 %  1000/1000 "};
+  for (int k = 0; k < 5; k++) assert_holds(text, shares[k]);
+}
+
+Test(progress, quiet_says_nothing)
+{
+  cr_assert_str_empty(lines_of_progress(PROGRESS_NONE, 10));
+}
+
+Test(progress, the_bar_stays_on_its_line_until_the_end)
+{
+  char *text = lines_of_progress(PROGRESS_BAR, 10);
+  cr_assert_eq(strchr(text, '\n'), text + strlen(text) - 1);
+  assert_holds(text, "\r[==============================] 100 %  1000/1000 ");
+}
+
+Test(recorder, the_next_step_is_the_first_that_is_due)
+{
+  struct scene scene = some_scene();
+  struct recorder *recorder;
+  bool replaced;
+  scene.output.every = 15;
+  cr_assert(recorder_open(&recorder, &scene, in_scratch("new/deep"), &replaced, &status), "%s", status.message);
+  cr_assert_not(replaced);
+  cr_assert_eq(recorder_next(recorder, 0), 15);
+  cr_assert_eq(recorder_next(recorder, 14), 15);
+  cr_assert_eq(recorder_next(recorder, 15), 30);
+  cr_assert_eq(recorder_next(recorder, 90), 100);
+  recorder_destroy(recorder);
+  cr_assert_eq(access(in_scratch("new/deep/case.yaml"), F_OK), 0);
+}
+
+Test(recorder, an_earlier_run_is_removed_and_other_files_are_not)
+{
+  struct scene scene = some_scene();
+  struct recorder *recorder;
+  bool replaced;
+  const char *const old[] = {"run.json", "particles.csv", "frames/00000000.png", "frames/123456789.png"};
+  const char *const foreign[] = {"notes.txt", "frames/film.png", "frames/00000000.jpg"};
+  cr_assert(file_make_directory(in_scratch("frames"), &status));
+  for (int k = 0; k < 4; k++) write_file(in_scratch(old[k]), "old");
+  for (int k = 0; k < 3; k++) write_file(in_scratch(foreign[k]), "kept");
+  cr_assert(recorder_open(&recorder, &scene, scratch, &replaced, &status), "%s", status.message);
+  recorder_destroy(recorder);
+  cr_assert(replaced);
+  for (int k = 0; k < 4; k++) cr_expect_eq(access(in_scratch(old[k]), F_OK), -1, "%s", old[k]);
+  for (int k = 0; k < 3; k++) cr_expect_eq(access(in_scratch(foreign[k]), F_OK), 0, "%s", foreign[k]);
+}
+
+Test(recorder, a_folder_under_a_file_is_an_input_output_error)
+{
+  struct scene scene = some_scene();
+  struct recorder *recorder;
+  bool replaced;
+  write_file(in_scratch("file"), "");
+  cr_assert_not(recorder_open(&recorder, &scene, in_scratch("file/run"), &replaced, &status));
+  cr_assert_eq(status.code, DELBM_IO);
+  cr_assert_not_null(strstr(status.message, "Not a directory"), "%s", status.message);
+  cr_assert_null(recorder);
+}
+
+#ifdef DELBM_PNG
+
+#include <png.h>
+
+/* A flow of `nx` x `ny` cells at rest, and two discs outside of it. */
+struct some_flow {
+  struct picture picture;
+  struct some_discs discs;
+  double *ux, *uy;
+};
+
+static struct picture *some_flow(struct some_flow *flow, int nx, int ny)
+{
+  size_t cells = (size_t)nx * (size_t)ny;
+  flow->ux = calloc(cells, sizeof(double));
+  flow->uy = calloc(cells, sizeof(double));
+  struct discs *discs = some_discs(&flow->discs);
+  for (int k = 0; k < DISCS; k++) discs->x[k] = -100;
+  flow->picture = (struct picture){.size = {nx, ny}, .ux = flow->ux, .uy = flow->uy, .discs = discs};
+  return &flow->picture;
+}
+
+/* A picture read back. */
+struct read_back {
+  png_image image;
+  uint8_t *pixels;
+};
+
+static struct read_back draw(const struct picture *picture)
+{
+  char *path = in_scratch("frame.png");
+  cr_assert(picture_write(picture, path, &status), "%s", status.message);
+  struct read_back back = {.image = {.version = PNG_IMAGE_VERSION}};
+  cr_assert(png_image_begin_read_from_file(&back.image, path));
+  back.image.format = PNG_FORMAT_RGB;
+  back.pixels = malloc(PNG_IMAGE_SIZE(back.image));
+  cr_assert(png_image_finish_read(&back.image, NULL, back.pixels, 0, NULL));
+  return back;
+}
+
+/* The colour as 0xRRGGBB at pixel (x, y) from the lower left. */
+static unsigned colour_at(const struct read_back *back, int x, int y)
+{
+  const uint8_t *pixel = back->pixels + 3 * ((back->image.height - 1 - (size_t)y) * back->image.width + (size_t)x);
+  return (unsigned)pixel[0] << 16 | (unsigned)pixel[1] << 8 | pixel[2];
+}
+
+static int lightness(unsigned colour)
+{
+  return (int)(colour >> 16) + (int)(colour >> 8 & 0xff) + (int)(colour & 0xff);
+}
+
+static void assert_pixels(int nx, int ny, unsigned width, unsigned height)
+{
+  struct some_flow flow;
+  struct read_back back = draw(some_flow(&flow, nx, ny));
+  cr_assert_eq(back.image.width, width, "%u pixels for %d cells", back.image.width, nx);
+  cr_assert_eq(back.image.height, height, "%u pixels for %d cells", back.image.height, ny);
+}
+
+Test(picture, has_one_pixel_a_cell_up_to_the_largest_picture)
+{
+  assert_pixels(400, 30, 400, 30);
+  assert_pixels(30, 1600, 30, 1600);
+}
+
+Test(picture, of_a_large_domain_averages_squares_of_cells)
+{
+  assert_pixels(1601, 5, 801, 3);
+  assert_pixels(10, 4001, 4, 1334);
+}
+
+Test(picture, of_a_small_domain_is_magnified)
+{
+  assert_pixels(399, 100, 798, 200);
+  assert_pixels(1, 1, 800, 800);
+}
+
+Test(picture, shows_a_disc_in_its_colour_with_its_turned_mark_and_outline)
+{
+  struct some_flow flow;
+  struct picture *picture = some_flow(&flow, 400, 300);
+  struct discs *discs = &flow.discs.discs;
+  discs->x[0] = 100;
+  discs->y[0] = 50;
+  struct read_back back = draw(picture);
+  cr_assert_eq(colour_at(&back, 104, 54), PICTURE_MARK);
+  cr_assert_eq(colour_at(&back, 95, 54), PICTURE_DISC);
+  cr_assert_eq(colour_at(&back, 104, 45), PICTURE_DISC);
+  cr_assert_lt(lightness(colour_at(&back, 109, 50)), lightness(PICTURE_MARK) / 2);
+  discs->angle[0] = M_PI / 2;
+  back = draw(picture);
+  cr_assert_eq(colour_at(&back, 104, 54), PICTURE_DISC);
+  cr_assert_eq(colour_at(&back, 95, 54), PICTURE_MARK);
+}
+
+Test(picture, shows_a_disc_across_a_periodic_side_on_both)
+{
+  struct some_flow flow;
+  struct picture *picture = some_flow(&flow, 400, 300);
+  flow.discs.discs.x[0] = 399;
+  flow.discs.discs.y[0] = 50;
+  struct read_back back = draw(picture);
+  cr_assert_eq(colour_at(&back, 395, 54), PICTURE_DISC);
+  cr_assert_neq(colour_at(&back, 4, 45), PICTURE_DISC);
+  picture->periodic[0] = true;
+  back = draw(picture);
+  cr_assert_eq(colour_at(&back, 395, 54), PICTURE_DISC);
+  cr_assert_eq(colour_at(&back, 4, 45), PICTURE_DISC);
+}
+
+Test(picture, is_lighter_where_the_flow_is_faster_and_has_y_upwards)
+{
+  struct some_flow flow;
+  struct picture *picture = some_flow(&flow, 400, 300);
+  for (int i = 0; i < 400; i++) flow.ux[i] = -0.1 * i / 399; /* in the lowest row alone */
+  struct read_back back = draw(picture);
+  cr_assert_lt(lightness(colour_at(&back, 300, 299)), 20);
+  for (int i = 20; i < 400; i += 20)
+    cr_assert_gt(lightness(colour_at(&back, i, 0)), lightness(colour_at(&back, i - 20, 0)));
+}
+
+Test(picture, has_the_colours_of_its_maximum)
+{
+  struct some_flow flow;
+  struct picture *picture = some_flow(&flow, 400, 300);
+  flow.uy[0] = 0.05;
+  struct read_back own = draw(picture);
+  picture->maximum = 0.1;
+  struct read_back fixed = draw(picture);
+  flow.uy[0] = 0.1;
+  struct read_back full = draw(picture);
+  cr_assert_eq(colour_at(&own, 0, 0), colour_at(&full, 0, 0));
+  cr_assert_lt(lightness(colour_at(&fixed, 0, 0)), lightness(colour_at(&full, 0, 0)));
+}
+
+Test(picture, of_rigid_rotation_is_of_one_colour_and_of_its_sign)
+{
+  struct some_flow flow;
+  struct picture *picture = some_flow(&flow, 400, 300);
+  picture->quantity = FRAME_VORTICITY;
+  picture->maximum = 0.004;
+  for (int j = 0; j < 300; j++)
+    for (int i = 0; i < 400; i++) {
+      flow.ux[j * 400 + i] = -0.001 * j;
+      flow.uy[j * 400 + i] = 0.001 * i;
+    }
+  struct read_back back = draw(picture);
+  unsigned colour = colour_at(&back, 200, 150);
+  cr_assert_gt(colour >> 16, colour & 0xff, "counter-clockwise is orange");
+  cr_assert_eq(colour_at(&back, 0, 0), colour);
+  cr_assert_eq(colour_at(&back, 399, 0), colour);
+  cr_assert_eq(colour_at(&back, 399, 299), colour);
+}
+
+Test(picture, drawn_twice_has_the_same_bytes)
+{
+  struct some_flow flow;
+  struct picture *picture = some_flow(&flow, 500, 300);
+  flow.discs.discs.x[0] = 77.7;
+  flow.discs.discs.y[0] = 33.3;
+  for (int k = 0; k < 500 * 300; k++) flow.ux[k] = 0.1 * sin(0.001 * k);
+  size_t first_length, second_length;
+  draw(picture);
+  char *first = contents(in_scratch("frame.png"), &first_length);
+  draw(picture);
+  char *second = contents(in_scratch("frame.png"), &second_length);
+  cr_assert_eq(first_length, second_length);
+  cr_assert_eq(memcmp(first, second, first_length), 0);
+}
+
+Test(picture, in_an_unwritable_place_is_an_input_output_error)
+{
+  struct some_flow flow;
+  struct picture *picture = some_flow(&flow, 20, 20);
+  write_file(in_scratch("file"), "");
+  cr_assert_not(picture_write(picture, in_scratch("file/frame.png"), &status));
+  cr_assert_eq(status.code, DELBM_IO);
+  cr_assert_eq(access(in_scratch("frame.png.tmp"), F_OK), -1);
+}
+
+#endif

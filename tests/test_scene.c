@@ -1,0 +1,689 @@
+#include "scene/scene.h"
+#include "scene/scene_errors.h"
+#include "scene/scene_file.h"
+#include "scene/scene_keys.h"
+#include "scene/scene_write.h"
+
+#include <criterion/criterion.h>
+#include <dirent.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static const char minimal[] = "domain: {size: [100, 200]}\nfluid: {viscosity: 0.05}\nrun: {steps: 10}\n";
+
+/* A case read from text in a temporary file. */
+struct reading {
+  struct scene scene;
+  struct scene_errors errors;
+  struct status status;
+  bool valid;
+};
+
+static struct reading read_sized(const char *text, size_t size, char *const set[], size_t set_count)
+{
+  struct reading reading = {0};
+  char path[] = "/tmp/delbm-scene-XXXXXX";
+  int descriptor = mkstemp(path);
+  cr_assert_geq(descriptor, 0);
+  FILE *file = fdopen(descriptor, "w");
+  cr_assert_eq(fwrite(text, 1, size, file), size);
+  cr_assert_eq(fclose(file), 0);
+  reading.valid = scene_read(&reading.scene, path, set, set_count, &reading.errors, &reading.status);
+  unlink(path);
+  return reading;
+}
+
+static struct reading read_text(const char *text)
+{
+  return read_sized(text, strlen(text), NULL, 0);
+}
+
+static struct reading read_with(const char *text, char *set)
+{
+  return read_sized(text, strlen(text), &set, 1);
+}
+
+/* The minimal case with one override, which must be valid. */
+static struct scene scene_with(char *set)
+{
+  struct reading reading = read_with(minimal, set);
+  if (!reading.valid) scene_errors_print(&reading.errors, stderr);
+  cr_assert(reading.valid, "%s: %s", set, reading.status.message);
+  return reading.scene;
+}
+
+static void release(struct reading *reading)
+{
+  scene_clear(&reading->scene);
+  scene_errors_clear(&reading->errors);
+}
+
+static char *written(const struct scene *scene)
+{
+  char *text = NULL;
+  size_t size;
+  FILE *file = open_memstream(&text, &size);
+  cr_assert(scene_write(scene, file));
+  cr_assert_eq(fclose(file), 0);
+  return text;
+}
+
+static bool same_pair(const double *a, const double *b)
+{
+  return memcmp(a, b, 2 * sizeof *a) == 0;
+}
+
+static bool same_disc(const struct disc_spec *a, const struct disc_spec *b)
+{
+  return a->radius == b->radius && a->density == b->density && same_pair(a->position, b->position) &&
+         same_pair(a->velocity, b->velocity) && a->angle == b->angle && a->spin == b->spin && a->motion == b->motion;
+}
+
+static void expect_same_discs(const struct scene *a, const struct scene *b)
+{
+  cr_assert_eq(a->particles.count, b->particles.count);
+  cr_expect_eq(a->particles.listed, b->particles.listed);
+  for (size_t i = 0; i < a->particles.count; i++)
+    cr_expect(same_disc(&a->particles.discs[i], &b->particles.discs[i]), "disc %zu", i);
+}
+
+static void expect_same_fill(const struct fill_spec *a, const struct fill_spec *b)
+{
+  cr_assert_eq(a->present, b->present);
+  if (!a->present) return;
+  cr_expect_eq(a->spacing, b->spacing);
+  cr_expect_eq(a->radius, b->radius);
+  cr_expect_eq(a->density, b->density);
+  cr_expect_eq(a->jitter, b->jitter);
+  cr_expect(same_pair(a->region, b->region) && same_pair(a->region + 2, b->region + 2));
+  cr_expect_eq(a->seed, b->seed);
+}
+
+static void expect_same_fluid(const struct scene *a, const struct scene *b)
+{
+  cr_expect_eq(a->fluid.viscosity, b->fluid.viscosity);
+  cr_expect(same_pair(a->fluid.force, b->fluid.force));
+  cr_expect_eq(a->fluid.collision, b->fluid.collision);
+  cr_expect_eq(a->fluid.rates.nu, b->fluid.rates.nu);
+  cr_expect_eq(a->fluid.rates.e, b->fluid.rates.e);
+  cr_expect_eq(a->fluid.rates.q, b->fluid.rates.q, "rates.q: %.17g and %.17g", a->fluid.rates.q, b->fluid.rates.q);
+  cr_expect_eq(a->fluid.precision, b->fluid.precision);
+  cr_expect_eq(a->fluid.zero_flux, b->fluid.zero_flux);
+  cr_expect_eq(!a->fluid.kernel, !b->fluid.kernel);
+  if (a->fluid.kernel && b->fluid.kernel) cr_expect_str_eq(a->fluid.kernel, b->fluid.kernel);
+}
+
+static void expect_same_scene(const struct scene *a, const struct scene *b)
+{
+  cr_expect_str_eq(a->title, b->title);
+  cr_expect_eq(memcmp(a->domain.size, b->domain.size, sizeof a->domain.size), 0);
+  for (int s = 0; s < SIDE_COUNT; s++) {
+    cr_expect_eq(a->domain.side[s].type, b->domain.side[s].type);
+    cr_expect(same_pair(a->domain.side[s].velocity, b->domain.side[s].velocity));
+  }
+  expect_same_fluid(a, b);
+  cr_expect_eq(memcmp(&a->coupling, &b->coupling, sizeof a->coupling), 0);
+  cr_expect(same_pair(a->particles.gravity, b->particles.gravity));
+  expect_same_fill(&a->particles.fill, &b->particles.fill);
+  expect_same_discs(a, b);
+  cr_expect_eq(a->contact.area, b->contact.area);
+  cr_expect_eq(a->contact.search, b->contact.search);
+  cr_expect_eq(a->contact.stiffness, b->contact.stiffness);
+  cr_expect_eq(a->contact.alpha, b->contact.alpha);
+  cr_expect_eq(a->contact.damping, b->contact.damping);
+  cr_expect_eq(a->contact.damping_form, b->contact.damping_form);
+  cr_expect_eq(a->contact.substeps, b->contact.substeps);
+  cr_expect_eq(a->contact.steps_per_contact, b->contact.steps_per_contact);
+  cr_expect_eq(a->run.steps, b->run.steps);
+  cr_expect_eq(a->run.check, b->run.check);
+  cr_expect_eq(a->output.every, b->output.every);
+  cr_expect_eq(a->output.frames.every, b->output.frames.every);
+  cr_expect_eq(a->output.frames.quantity, b->output.frames.quantity);
+  cr_expect_eq(a->output.frames.maximum, b->output.frames.maximum);
+}
+
+/* Writing and reading gives the same scene, and writing that the same text. */
+static void expect_round_trip(const struct scene *scene)
+{
+  char *text = written(scene);
+  struct reading again = read_text(text);
+  if (!again.valid) scene_errors_print(&again.errors, stderr);
+  cr_assert(again.valid, "%s", text);
+  expect_same_scene(scene, &again.scene);
+  char *second = written(&again.scene);
+  cr_expect_str_eq(text, second);
+  free(text);
+  free(second);
+  release(&again);
+}
+
+static void expect_round_trip_of(const char *text)
+{
+  struct reading reading = read_text(text);
+  if (!reading.valid) scene_errors_print(&reading.errors, stderr);
+  cr_assert(reading.valid, "%s", text);
+  expect_round_trip(&reading.scene);
+  release(&reading);
+}
+
+static const char full[] = "title: \"All keys: \\\"one\\\" # two\\n\\u00fc\\u2028\\x07\"\n"
+                           "domain:\n"
+                           "  size: [120, 3e2]\n"
+                           "  left: periodic\n"
+                           "  right: {type: periodic}\n"
+                           "  bottom: {type: inlet, velocity: [0.01, 0.1]}\n"
+                           "  top: outlet\n"
+                           "fluid:\n"
+                           "  viscosity: 0.1\n"
+                           "  force: [1e-5, -0.0]\n"
+                           "  collision: mrt\n"
+                           "  rates: {e: 1.1, q: 0.7}\n"
+                           "  precision: double\n"
+                           "  zero_flux: false\n"
+                           "  kernel: reference\n"
+                           "coupling: {form: unified, solve: explicit-averaged}\n"
+                           "particles:\n"
+                           "  density: 1.01\n"
+                           "  gravity: [0, -0.0245]\n"
+                           "  discs:\n"
+                           "    - {radius: 10, position: [100.1, 200], velocity: [0, -0.05], angle: 1, spin: 0.01}\n"
+                           "    - {radius: 5, density: 2, position: [30, 0.1], fixed: true, spin: -0.02}\n"
+                           "    - {radius: 7.5, position: [60, 250], driven: true, velocity: [0.01, 0]}\n"
+                           "  fill: {pattern: jittered-grid, spacing: 20, radius: 5, density: 3, jitter: 1.5,\n"
+                           "         region: [0, 0, 100, 50.5], seed: 4294967295}\n"
+                           "contact:\n"
+                           "  area: cells\n"
+                           "  search: linked-cell\n"
+                           "  stiffness: 0.5\n"
+                           "  alpha: 0.25\n"
+                           "  damping: 0\n"
+                           "  damping_form: printed\n"
+                           "  substeps: 4\n"
+                           "  steps_per_contact: 30\n"
+                           "run: {steps: 1e6, check: 7}\n"
+                           "output: {every: 0, frames: {every: 50, quantity: vorticity, maximum: 0.125}}\n";
+
+Test(scene, full_case_gives_domain_and_fluid)
+{
+  struct reading reading = read_text(full);
+  const struct scene *scene = &reading.scene;
+  scene_errors_print(&reading.errors, stderr);
+  cr_assert(reading.valid);
+  cr_expect_str_eq(scene->title, "All keys: \"one\" # two\n\u00fc\u2028\a");
+  cr_expect_eq(scene->domain.size[0], 120);
+  cr_expect_eq(scene->domain.size[1], 300);
+  cr_expect(scene_is_periodic(scene, 0) && !scene_is_periodic(scene, 1));
+  cr_expect_eq(scene->domain.side[SIDE_BOTTOM].type, SIDE_INLET);
+  cr_expect_eq(scene->domain.side[SIDE_BOTTOM].velocity[1], 0.1);
+  cr_expect_eq(scene->domain.side[SIDE_TOP].type, SIDE_OUTLET);
+  cr_expect_eq(scene->fluid.force[0], 1e-5);
+  cr_expect(fabs(scene->fluid.rates.nu - 1.25) < 1e-15);
+  cr_expect_eq(scene->fluid.rates.e, 1.1);
+  cr_expect_eq(scene->fluid.rates.q, 0.7);
+  cr_expect_not(scene->fluid.zero_flux);
+  cr_expect_str_eq(scene->fluid.kernel, "reference");
+  cr_expect_eq(scene->coupling.form, FORM_UNIFIED);
+  cr_expect_eq(scene->coupling.solve, SOLVE_EXPLICIT_AVERAGED);
+  release(&reading);
+}
+
+Test(scene, full_case_gives_particles)
+{
+  struct reading reading = read_text(full);
+  const struct scene *scene = &reading.scene;
+  cr_assert(reading.valid);
+  cr_expect_eq(scene->particles.gravity[1], -0.0245);
+  cr_assert_eq(scene->particles.listed, 3);
+  cr_assert_eq(scene->particles.count, 3 + 5 * 2);
+  const struct disc_spec *discs = scene->particles.discs;
+  cr_expect(discs[0].motion == DISC_FREE && discs[1].motion == DISC_FIXED && discs[2].motion == DISC_DRIVEN);
+  cr_expect(discs[0].density == 1.01 && discs[1].density == 2 && discs[2].density == 1.01);
+  cr_expect(discs[0].angle == 1 && discs[0].spin == 0.01 && discs[0].velocity[1] == -0.05);
+  cr_expect(discs[3].density == 3 && discs[3].radius == 5 && discs[3].motion == DISC_FREE);
+  cr_expect_eq(scene->particles.fill.seed, 4294967295u);
+  release(&reading);
+}
+
+Test(scene, full_case_gives_contact_run_and_output)
+{
+  struct reading reading = read_text(full);
+  const struct scene *scene = &reading.scene;
+  cr_assert(reading.valid);
+  cr_expect(scene->contact.area == AREA_CELLS && scene->contact.search == SEARCH_LINKED_CELL);
+  cr_expect(scene->contact.stiffness == 0.5 && scene->contact.alpha == 0.25 && scene->contact.damping == 0);
+  cr_expect(scene->contact.damping_form == DAMPING_PRINTED && scene->contact.substeps == 4);
+  cr_expect_eq(scene->contact.steps_per_contact, 30);
+  cr_expect(scene->run.steps == 1000000 && scene->run.check == 7);
+  cr_expect(scene->output.every == 0 && scene->output.frames.every == 50);
+  cr_expect(scene->output.frames.quantity == FRAME_VORTICITY && scene->output.frames.maximum == 0.125);
+  release(&reading);
+}
+
+Test(scene, minimal_case_has_documented_defaults)
+{
+  struct reading reading = read_text(minimal);
+  const struct scene *scene = &reading.scene;
+  cr_assert(reading.valid);
+  cr_expect_str_eq(scene->title, "");
+  for (int s = 0; s < SIDE_COUNT; s++) cr_expect_eq(scene->domain.side[s].type, SIDE_WALL);
+  cr_expect(scene->fluid.collision == COLLISION_MRT && scene->fluid.precision == PRECISION_DOUBLE);
+  cr_expect(scene->fluid.rates.e == 1.4 && scene->fluid.rates.q == 1.2);
+  cr_expect(!scene->fluid.zero_flux && !scene->fluid.kernel);
+  cr_expect(scene->coupling.form == FORM_OWEN && scene->coupling.solve == SOLVE_IMPLICIT);
+  cr_expect(scene->particles.count == 0 && !scene->particles.fill.present);
+  cr_expect(scene->contact.area == AREA_LENS && scene->contact.search == SEARCH_GRID);
+  cr_expect(scene->contact.stiffness == 0.25 && scene->contact.alpha == 0.3 && scene->contact.damping == 0.34);
+  cr_expect(scene->contact.damping_form == DAMPING_CRITICAL && scene->contact.substeps == 0);
+  cr_expect_eq(scene->contact.steps_per_contact, 20);
+  cr_expect_eq(scene->run.check, 50);
+  cr_expect(scene->output.every == 100 && scene->output.frames.every == 0 && scene->output.frames.maximum == 0);
+  cr_expect_eq(scene->output.frames.quantity, FRAME_SPEED);
+  release(&reading);
+}
+
+Test(scene, written_case_reads_back_the_same)
+{
+  static const char *const sides[] = {
+      "domain: {size: [9, 9], top: {velocity: [-0.1, 0]}}\nfluid: {viscosity: 1e-3}\nrun: {steps: 0}\n",
+      "domain: {size: [9, 9], top: periodic, bottom: periodic}\nfluid: {viscosity: 10, collision: bgk}\nrun: {steps: "
+      "1}\n",
+      "title: >-\n  folded\n  title\n"
+      "domain: {size: [9, 9]}\nfluid: {viscosity: 0.1, magic: 0.2}\nrun: {steps: 1}\n",
+  };
+  expect_round_trip_of(full);
+  expect_round_trip_of(minimal);
+  for (size_t i = 0; i < sizeof sides / sizeof sides[0]; i++) expect_round_trip_of(sides[i]);
+}
+
+Test(scene, written_trt_case_reads_back_the_same_rates)
+{
+  static const double viscosities[] = {1e-6, 0.005, 0.05, 1.0 / 6, 0.1234567890123456, 10};
+  static const double magics[] = {1e-8, 0.0101, 1.0 / 12, 0.1875, 1.0 / 3, 0.98765432109876543, 10};
+  for (size_t i = 0; i < sizeof viscosities / sizeof *viscosities; i++) {
+    for (size_t j = 0; j < sizeof magics / sizeof *magics; j++) {
+      char text[256];
+      snprintf(text, sizeof text,
+               "domain: {size: [9, 9]}\nfluid: {viscosity: %.17g, collision: trt, magic: %.17g}\nrun: {steps: 1}\n",
+               viscosities[i], magics[j]);
+      expect_round_trip_of(text);
+    }
+  }
+}
+
+Test(scene, written_case_is_marked_with_the_version_and_keeps_short_numbers)
+{
+  struct scene scene = scene_with("fluid={viscosity: 0.1, collision: trt, magic: 0.1875}");
+  char *text = written(&scene);
+  cr_expect_eq(
+      strncmp(text, "# written by delbm " DELBM_VERSION "\n", strlen("# written by delbm " DELBM_VERSION "\n")), 0);
+  cr_expect(strstr(text, "  viscosity: 0.1\n"));
+  cr_expect(strstr(text, "  magic: 0.1875\n"), "%s", text);
+  cr_expect_not(strstr(text, "rates"));
+  free(text);
+  scene_clear(&scene);
+}
+
+Test(scene, rates_follow_the_collision)
+{
+  struct scene bgk = scene_with("fluid={viscosity: 0.1, collision: bgk}");
+  cr_expect(bgk.fluid.rates.e == bgk.fluid.rates.nu && bgk.fluid.rates.q == bgk.fluid.rates.nu);
+  struct scene trt = scene_with("fluid={viscosity: 0.1, collision: trt}");
+  cr_expect(trt.fluid.rates.e == trt.fluid.rates.nu && trt.fluid.rates.q == rate_from_magic(0.1875, 0.1));
+  struct scene nested = scene_with("fluid={viscosity: 0.1, collision: trt, rates: {magic: 0.25}}");
+  cr_expect_eq(nested.fluid.rates.q, rate_from_magic(0.25, 0.1));
+  struct scene mrt = scene_with("fluid={viscosity: 0.1, magic: 0.25, rates: {e: 1.3}}");
+  cr_expect(mrt.fluid.rates.e == 1.3 && mrt.fluid.rates.q == rate_from_magic(0.25, 0.1));
+  scene_clear(&bgk);
+  scene_clear(&trt);
+  scene_clear(&nested);
+  scene_clear(&mrt);
+}
+
+Test(scene, zero_flux_is_on_where_walls_close_an_axis_and_gravity_acts_on_free_discs)
+{
+  static const struct {
+    char *particles;
+    bool zero_flux;
+  } cases[] = {
+      {"particles={gravity: [0, -0.01], discs: [{radius: 5, position: [50, 50], density: 2}]}", true},
+      {"particles={gravity: [0, -0.01], fill: {radius: 5, spacing: 20, density: 2}}", true},
+      {"particles={gravity: [0, -0.01], discs: [{radius: 5, position: [50, 50], fixed: true}]}", false},
+      {"particles={gravity: [0, 0], discs: [{radius: 5, position: [50, 50], density: 2}]}", false},
+      {"particles={gravity: [0, -0.01]}", false},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    struct scene scene = scene_with(cases[i].particles);
+    cr_expect_eq(scene.fluid.zero_flux, cases[i].zero_flux, "%s", cases[i].particles);
+    scene_clear(&scene);
+  }
+}
+
+Test(scene, fixed_and_driven_discs_need_no_density)
+{
+  struct scene scene = scene_with("particles.discs=[{radius: 5, position: [50, 50], fixed: true},"
+                                  "{radius: 5, position: [20, 50], driven: true}]");
+  cr_expect(scene.particles.discs[0].density == 1 && scene.particles.discs[1].density == 1);
+  scene_clear(&scene);
+}
+
+Test(scene, override_replaces_any_value)
+{
+  struct scene scene = scene_with("domain.size=[512, 1e3]");
+  cr_expect(scene.domain.size[0] == 512 && scene.domain.size[1] == 1000);
+  scene_clear(&scene);
+  scene = scene_with("domain.top={type: wall, velocity: [0.1, 0]}");
+  cr_expect_eq(scene.domain.side[SIDE_TOP].velocity[0], 0.1);
+  scene_clear(&scene);
+  scene = scene_with("output.frames.every=200");
+  cr_expect_eq(scene.output.frames.every, 200);
+  scene_clear(&scene);
+  scene = scene_with("title=a title = with signs");
+  cr_expect_str_eq(scene.title, "a title = with signs");
+  scene_clear(&scene);
+}
+
+Test(scene, later_override_wins_and_reaches_into_sides_and_discs)
+{
+  char *set[] = {"domain.top=outlet",
+                 "domain.top=wall",
+                 "domain.top.velocity=[0.2, 0]",
+                 "particles.discs=[{radius: 5, position: [50, 50], density: 2}]",
+                 "particles.discs.0.radius=6",
+                 "particles.discs.0.density=3"};
+  struct reading reading = read_sized(minimal, strlen(minimal), set, sizeof set / sizeof set[0]);
+  scene_errors_print(&reading.errors, stderr);
+  cr_assert(reading.valid);
+  cr_expect_eq(reading.scene.domain.side[SIDE_TOP].velocity[0], 0.2);
+  cr_expect_eq(reading.scene.particles.discs[0].radius, 6);
+  cr_expect_eq(reading.scene.particles.discs[0].density, 3);
+  release(&reading);
+}
+
+Test(scene, override_leaves_what_shares_an_alias_alone)
+{
+  static const char text[] = "domain: {size: [100, 200]}\nfluid: {viscosity: &nu 0.05}\nrun: {steps: 10}\n"
+                             "particles:\n  discs:\n    - &disc {radius: 5, position: &at [50, 50], density: 2}\n";
+  struct reading reading = read_with(text, "contact={stiffness: 3}");
+  cr_assert(reading.valid);
+  cr_expect_eq(reading.scene.contact.stiffness, 3);
+  release(&reading);
+  static const char shared[] =
+      "domain: {size: [100, 200], left: &side {type: wall, velocity: [0, 0.1]}, right: *side}\n"
+      "fluid: {viscosity: 0.05}\nrun: {steps: 10}\n";
+  reading = read_with(shared, "domain.left.velocity=[0, 0.2]");
+  cr_assert(reading.valid);
+  cr_expect_eq(reading.scene.domain.side[SIDE_LEFT].velocity[1], 0.2);
+  cr_expect_eq(reading.scene.domain.side[SIDE_RIGHT].velocity[1], 0.1);
+  release(&reading);
+}
+
+Test(scene, override_that_is_wrong_is_named)
+{
+  static const struct {
+    char *set;
+    const char *error;
+  } cases[] = {
+      {"fluid.viscosty=1", "--set fluid.viscosty=1: unknown key fluid.viscosty; did you mean fluid.viscosity?"},
+      {"flud.viscosity=1", "--set flud.viscosity=1: unknown key flud; did you mean fluid?"},
+      {"viscosity=1", "--set viscosity=1: unknown key viscosity; did you mean fluid.viscosity?"},
+      {"fluid.viscosity=thick",
+       "--set fluid.viscosity=thick: fluid.viscosity: got thick; expected a number > 0 and <= 10"},
+      {"domain.left=wal", "--set domain.left=wal: domain.left.type: got wal; expected wall, periodic, inlet or outlet"},
+      {"fluid", "--set fluid: expected dotted.key=value"},
+      {"=3", "--set =3: expected dotted.key=value"},
+      {"title=", "--set title=: expected dotted.key=value"},
+      {"title=# nothing", "--set title=# nothing: empty; expected a YAML document"},
+      {"fluid..viscosity=1", "--set fluid..viscosity=1: an empty name in the key; expected dotted.key=value"},
+      {"fluid.=1", "--set fluid.=1: an empty name in the key; expected dotted.key=value"},
+      {"fluid.viscosity.x=1", "--set fluid.viscosity.x=1: the key leads into a single value"},
+      {"domain.size.2=1", "--set domain.size.2=1: no entry 2 in the list, which has 2, from 0"},
+      {"domain.size.x=1", "--set domain.size.x=1: no entry x in the list, which has 2, from 0"},
+      {"domain.size=[1,", "--set domain.size=[1,: not valid YAML: did not find expected node content, "
+                          "while parsing a flow node"},
+      {"contact={alpha: 1, alpha: 2}", "--set contact={alpha: 1, alpha: 2}: key alpha given twice"},
+      {"title=a: b: c", "--set title=a: b: c: not valid YAML: mapping values are not allowed in this context"},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    struct reading reading = read_with(minimal, cases[i].set);
+    cr_expect_not(reading.valid, "%s", cases[i].set);
+    cr_assert_geq(reading.errors.count, 1, "%s", cases[i].set);
+    cr_expect_str_eq(reading.errors.lines[0], cases[i].error);
+    release(&reading);
+  }
+}
+
+Test(scene, errors_in_file_and_overrides_are_reported_together)
+{
+  char *set[] = {"run.stops=3", "nonsense"};
+  struct reading reading = read_sized("fluid: {viscosity: -1}\n", 23, set, 2);
+  cr_expect_not(reading.valid);
+  cr_expect_eq(reading.status.code, DELBM_INVALID);
+  cr_expect_eq(reading.errors.count, 5);
+  cr_expect(strstr(reading.status.message, "5 errors in "), "%s", reading.status.message);
+  release(&reading);
+}
+
+Test(scene, missing_file_is_an_input_error)
+{
+  struct scene scene;
+  struct scene_errors errors = {0};
+  struct status status;
+  cr_expect_not(scene_read(&scene, "/nonexistent/case.yaml", NULL, 0, &errors, &status));
+  cr_expect_eq(status.code, DELBM_IO);
+  cr_expect_str_eq(status.message, "cannot open /nonexistent/case.yaml: No such file or directory");
+  cr_expect_not(scene_read(&scene, "/tmp", NULL, 0, &errors, &status));
+  cr_expect_eq(status.code, DELBM_IO);
+  cr_expect_str_eq(status.message, "cannot open /tmp/case.yaml: No such file or directory");
+  cr_expect_eq(errors.count, 0);
+}
+
+static void make_file(const char *path)
+{
+  FILE *file = fopen(path, "w");
+  cr_assert(file);
+  fputs(minimal, file);
+  fclose(file);
+}
+
+static void expect_name(const char *path, const char *name)
+{
+  struct scene scene;
+  struct scene_errors errors = {0};
+  struct status status;
+  cr_assert(scene_read(&scene, path, NULL, 0, &errors, &status), "%s", path);
+  cr_expect_str_eq(scene.name, name, "%s: %s", path, scene.name);
+  scene_clear(&scene);
+}
+
+Test(scene, name_is_the_folders_or_the_files)
+{
+  char root[] = "/tmp/delbm-scene-XXXXXX";
+  cr_assert(mkdtemp(root));
+  cr_assert_eq(chdir(root), 0);
+  cr_assert_eq(mkdir("sedimentation", 0755), 0);
+  make_file("sedimentation/case.yaml");
+  make_file("sedimentation/re.10.yaml");
+  expect_name("sedimentation", "sedimentation");
+  expect_name("sedimentation/", "sedimentation");
+  expect_name("sedimentation/case.yaml", "sedimentation");
+  expect_name("sedimentation/re.10.yaml", "re.10");
+  cr_assert_eq(chdir("sedimentation"), 0);
+  expect_name(".", "sedimentation");
+  expect_name("case.yaml", "sedimentation");
+  unlink("case.yaml");
+  unlink("re.10.yaml");
+  rmdir("../sedimentation");
+  rmdir(root);
+}
+
+Test(scene, fill_starts_lower_left_and_goes_row_by_row)
+{
+  struct scene scene =
+      scene_with("particles.fill={spacing: 20, radius: 5, density: 2, jitter: 0, region: [1, 2, 82, 61]}");
+  cr_assert_eq(scene.particles.count, 4 * 2);
+  for (size_t i = 0; i < 8; i++) {
+    cr_expect_eq(scene.particles.discs[i].position[0], 11 + 20.0 * (double)(i % 4));
+    cr_expect_eq(scene.particles.discs[i].position[1], 12 + 20.0 * (double)(i / 4));
+  }
+  scene_clear(&scene);
+}
+
+Test(scene, fill_covers_the_box_and_displaces_by_at_most_a_quarter_of_the_gap)
+{
+  struct scene scene = scene_with("particles.fill={spacing: 20, radius: 6, density: 2}");
+  cr_assert_eq(scene.particles.count, 5 * 10);
+  double largest = 0;
+  for (size_t i = 0; i < scene.particles.count; i++) {
+    double x = 10 + 20.0 * (double)(i % 5), y = 10 + 20.0 * (double)(i / 5);
+    largest = fmax(largest, fabs(scene.particles.discs[i].position[0] - x));
+    largest = fmax(largest, fabs(scene.particles.discs[i].position[1] - y));
+  }
+  cr_expect(largest > 1.8 && largest <= 2, "%g", largest);
+  scene_clear(&scene);
+}
+
+Test(scene, fill_depends_on_its_seed_alone)
+{
+  struct scene one = scene_with("particles.fill={spacing: 20, radius: 5, density: 2, seed: 7}");
+  struct scene same = scene_with("particles.fill={spacing: 20, radius: 5, density: 2, seed: 7}");
+  struct scene other = scene_with("particles.fill={spacing: 20, radius: 5, density: 2, seed: 8}");
+  expect_same_discs(&one, &same);
+  cr_expect_neq(one.particles.discs[0].position[0], other.particles.discs[0].position[0]);
+  scene_clear(&one);
+  scene_clear(&same);
+  scene_clear(&other);
+}
+
+Test(scene, whole_number_may_have_an_exponent)
+{
+  struct scene scene = scene_with("run.steps=12.50e2");
+  cr_expect_eq(scene.run.steps, 1250);
+  scene_clear(&scene);
+  scene = scene_with("run.steps=2000e-3");
+  cr_expect_eq(scene.run.steps, 2);
+  scene_clear(&scene);
+  struct reading reading = read_with(minimal, "run.steps=2001e-3");
+  cr_expect_not(reading.valid);
+  release(&reading);
+}
+
+Test(scene, errors_beyond_the_limit_are_counted)
+{
+  enum { WRONG = 5000 };
+  char *text = NULL;
+  size_t size;
+  FILE *file = open_memstream(&text, &size);
+  fprintf(file, "%sparticles:\n  discs:\n", minimal);
+  for (int i = 0; i < WRONG; i++) fputs("    - 1\n", file);
+  fclose(file);
+  struct reading reading = read_sized(text, size, NULL, 0);
+  cr_expect_not(reading.valid);
+  cr_expect_eq(reading.errors.count, SCENE_ERRORS_KEPT);
+  cr_expect_eq(scene_errors_total(&reading.errors), WRONG);
+  free(text);
+  release(&reading);
+}
+
+Test(scene, file_that_is_too_large_is_refused)
+{
+  size_t size = ((size_t)SCENE_FILE_MIB << 20) + 1;
+  char *text = malloc(size);
+  cr_assert(text);
+  memset(text, '\n', size);
+  struct reading reading = read_sized(text, size, NULL, 0);
+  cr_expect_not(reading.valid);
+  cr_assert_eq(reading.errors.count, 1);
+  cr_expect(strstr(reading.errors.lines[0], "the file is too large; expected at most 64 MiB"));
+  free(text);
+  release(&reading);
+}
+
+Test(scene, deep_nesting_is_refused_at_once, .timeout = 10)
+{
+  size_t size = (size_t)8 << 20;
+  char *text = malloc(size);
+  cr_assert(text);
+  memset(text, '[', size);
+  struct reading reading = read_sized(text, size, NULL, 0);
+  cr_expect_not(reading.valid);
+  cr_assert_eq(reading.errors.count, 1);
+  cr_expect(strstr(reading.errors.lines[0], ":1:33: nested too deep"), "%s", reading.errors.lines[0]);
+  free(text);
+  release(&reading);
+}
+
+Test(scene, key_reference_has_every_key)
+{
+  char *text = NULL;
+  size_t size, count;
+  FILE *file = open_memstream(&text, &size);
+  scene_print_keys(file);
+  fclose(file);
+  const struct key *keys = key_table(&count);
+  for (size_t i = 0; i < count; i++) cr_expect(strstr(text, keys[i].path), "%s", keys[i].path);
+  free(text);
+}
+
+/* Golden tests: tests/broken/NAME.yaml and what is said about it in NAME.expected. */
+
+static char *read_expected(const char *name)
+{
+  char path[512];
+  snprintf(path, sizeof path, "%s.expected", name);
+  FILE *file = fopen(path, "r");
+  cr_assert(file, "cannot open %s", path);
+  char *text = NULL;
+  size_t capacity = 0;
+  if (getdelim(&text, &capacity, '\0', file) < 0) cr_assert_fail("%s is empty", path);
+  fclose(file);
+  return text;
+}
+
+static void expect_errors(const char *name)
+{
+  char path[512], *text = NULL;
+  size_t size;
+  struct scene scene;
+  struct scene_errors errors = {0};
+  struct status status;
+  snprintf(path, sizeof path, "%s.yaml", name);
+  cr_expect_not(scene_read(&scene, path, NULL, 0, &errors, &status), "%s is taken as valid", path);
+  cr_expect_eq(status.code, DELBM_INVALID, "%s: %s", path, status.message);
+  FILE *file = open_memstream(&text, &size);
+  scene_errors_print(&errors, file);
+  fclose(file);
+  char *expected = read_expected(name);
+  cr_expect_str_eq(text, expected, "%s gives\n%sinstead of\n%s", path, text, expected);
+  free(expected);
+  free(text);
+  scene_errors_clear(&errors);
+}
+
+static bool strip(char *name, const char *extension)
+{
+  char *dot = strrchr(name, '.');
+  if (!dot || strcmp(dot, extension) != 0) return false;
+  *dot = '\0';
+  return true;
+}
+
+Test(scene, broken_cases_get_the_expected_errors, .timeout = 60)
+{
+  const char *root = getenv("DELBM_SOURCE_ROOT");
+  cr_assert_eq(chdir(root ? root : TEST_DIR), 0);
+  cr_assert_eq(chdir(root ? "tests/broken" : "broken"), 0);
+  DIR *folder = opendir(".");
+  cr_assert(folder);
+  size_t count = 0;
+  for (struct dirent *entry = readdir(folder); entry; entry = readdir(folder)) {
+    if (!strip(entry->d_name, ".yaml")) continue;
+    expect_errors(entry->d_name);
+    count++;
+  }
+  closedir(folder);
+  cr_expect_geq(count, 100);
+}
