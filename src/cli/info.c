@@ -1,6 +1,7 @@
 #include "cli/commands.h"
 #include "cli/options.h"
 
+#include "base/threads.h"
 #include "contact/law.h"
 #include "fluid/sweep.h"
 #include "sim/plan.h"
@@ -8,7 +9,6 @@
 
 #include <inttypes.h>
 #include <math.h>
-#include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -178,7 +178,7 @@ static int print_case(const struct scene *scene)
   print_speeds(scene);
   if (plan.exchange) print_discs(scene);
   print_contacts(scene, &plan);
-  printf("run          %" PRId64 " steps, %d threads, kernel %s\n", scene->run.steps, omp_get_max_threads(),
+  printf("run          %" PRId64 " steps, %d threads, kernel %s\n", scene->run.steps, threads_for(scene_cells(scene)),
          kernel->name);
   print_memory(scene);
   print_stages(scene, &plan);

@@ -2,11 +2,10 @@
 
 #include <math.h>
 
-/* asin(s) - s sqrt(1 - s^2): the area of the lesser segment of a unit disc that a chord of half-length s cuts off. */
-static double segment(double s)
+/* asin(s) - s sqrt(1 - s^2), the area of the segment of a unit disc that a chord of half-length s <= 1/4 cuts off:
+ * the integral of 2 s^2/sqrt(1 - s^2), term by term. */
+static double small_segment(double s)
 {
-  if (s > 0.25) return asin(s) - s * sqrt((1 - s) * (1 + s));
-  /* the integral of 2 s^2 / sqrt(1 - s^2), term by term */
   double power = 2 * s * s * s, sum = power / 3;
   for (int n = 1; n < 14; n++) {
     power *= s * s * (2 * n - 1) / (2 * n);
@@ -15,11 +14,11 @@ static double segment(double s)
   return sum;
 }
 
-/* Area of the segment of a disc beyond a chord at signed distance x from its centre. */
+/* Area of the segment of a disc beyond a chord at signed distance x from its centre: sector less triangle. */
 static double disc_segment(double radius, double half_chord, double x)
 {
-  const double lesser = radius * radius * segment(fmin(1, half_chord / radius));
-  return x >= 0 ? lesser : M_PI * radius * radius - lesser;
+  if (x > 0 && half_chord <= radius / 4) return radius * radius * small_segment(half_chord / radius);
+  return radius * radius * atan2(half_chord, x) - x * half_chord;
 }
 
 struct lens lens_of_discs(double ra, double rb, double d)

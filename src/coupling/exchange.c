@@ -5,6 +5,32 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* The least inertia, of a disc and what follows it at once, in units of m_f. */
+static const double least_inertia = 0.15;
+
+static bool is_light(const struct discs *d, size_t i)
+{
+  return d->motion[i] == DISC_FREE && d->mass[i] < (1 + least_inertia) * d->fluid_mass[i];
+}
+
+static bool any_light(const struct exchange *e, const struct discs *d)
+{
+  if (e->solve != SOLVE_IMPLICIT) return false;
+  for (size_t i = 0; i < d->count; i++)
+    if (is_light(d, i)) return true;
+  return false;
+}
+
+struct held exchange_held(const struct exchange *e, const struct discs *d, size_t i)
+{
+  if (!e->memory || !is_light(d, i)) return (struct held){0};
+  const double inertia = d->mass[i] - d->fluid_mass[i] + e->gathered[i].m0 / 2;
+  const double angular = d->inertia[i] - d->fluid_inertia[i] + e->gathered[i].m2 / 2;
+  return (struct held){.mass = fmax(0, least_inertia * d->fluid_mass[i] - inertia),
+                       .inertia = fmax(0, least_inertia * d->fluid_inertia[i] - angular),
+                       .time = 4 * sqrt(3) * d->radius[i]};
+}
+
 bool exchange_create(struct exchange *e, const struct scene *scene, const struct discs *discs, struct status *status)
 {
   const char *what = "the exchange";
@@ -13,6 +39,7 @@ bool exchange_create(struct exchange *e, const struct scene *scene, const struct
   if ((e->gathered = memory_allocate(discs->count, sizeof *e->gathered, what, status)) &&
       (e->response = memory_allocate(discs->count, sizeof *e->response, what, status)) &&
       (e->surface = memory_allocate(discs->count, sizeof *e->surface, what, status)) &&
+      (!any_light(e, discs) || (e->memory = memory_allocate(3 * discs->count, sizeof *e->memory, what, status))) &&
       (e->solve == SOLVE_IMPLICIT || (e->last = memory_allocate(3 * discs->count, sizeof *e->last, what, status))))
     return true;
   exchange_destroy(e);
@@ -25,6 +52,7 @@ void exchange_destroy(struct exchange *e)
   free(e->response);
   free(e->surface);
   free(e->last);
+  free(e->memory);
   *e = (struct exchange){0};
 }
 
@@ -81,7 +109,15 @@ static bool solve_implicit(struct exchange *e, const struct discs *d, size_t i, 
   exchange_force(&e->gathered[i], d->vx[i], d->vy[i], d->omega[i], r);
   r[0] += weight[0];
   r[1] += weight[1];
-  if (!invert(&e->gathered[i], d->mass[i] - d->fluid_mass[i], d->inertia[i] - d->fluid_inertia[i], &e->response[i]))
+  const struct held held = exchange_held(e, d, i);
+  if (held.time > 0) {
+    const double *p = &e->memory[3 * i];
+    r[0] += held.mass * p[0] / held.time;
+    r[1] += held.mass * p[1] / held.time;
+    r[2] += held.inertia * p[2] / held.time;
+  }
+  if (!invert(&e->gathered[i], d->mass[i] - d->fluid_mass[i] + held.mass,
+              d->inertia[i] - d->fluid_inertia[i] + held.inertia, &e->response[i]))
     return false;
   respond(&e->response[i], r);
   return true;

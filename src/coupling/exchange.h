@@ -11,6 +11,13 @@
  * The gather stops short of J: it leaves A^-1 and A^-1 R, and contacts (sim/contact.c), however many sub-steps they take, add
  * A^-1 J. The sweep then runs with the new velocities and needs no reduction.
  *
+ * Light discs. m_f counts all fluid inside the disc, but only M0/2 of it follows within the step; the rest, in partly covered
+ * cells, follows in the time of sound. Below a density of about 1 - M0/(2 m_f), 0.1 to 0.3, a disc and what follows it at once
+ * have less than no inertia, and sound between two discs, or a disc and a wall, feeds on that. So such a disc is given a held
+ * mass c that makes up for it, at once, and gives it back over a few passages of sound T:
+ *   A = ... + c,  R = ... + c p/T,  p' = (1 - 1/T) p + dV.
+ * A steady acceleration is what it was, since then p = T dV; conserved is (m - m_f) V + c p. Rotation likewise.
+ *
  * explicit-averaged, for comparison: A = diag(m, m, I), R = weight + mean of the exchange at V over this step and the last; the
  * sweep sees V.
  *
@@ -39,7 +46,8 @@ struct exchange {
   struct moment_sums *gathered;
   struct response *response;
   struct surface_velocity *surface;
-  double *last; /* explicit-averaged: [3 disc + component] exchange of the step before */
+  double *last;   /* explicit-averaged: [3 disc + component] exchange of the step before */
+  double *memory; /* implicit, with light discs: [3 disc + component] p of each disc; else NULL */
   bool has_last;
 };
 
@@ -52,6 +60,12 @@ void exchange_destroy(struct exchange *exchange);
 void stage_exchange(struct exchange *exchange, const struct sweep_kernel *kernel, const struct populations *populations,
                     const struct sweep_constants *constants, const struct occupation *occupation,
                     const struct discs *discs, int64_t step, struct team *team);
+
+/* What a light disc is held by in a step: c, that of rotation, and the time T. All zero for any other disc. */
+struct held {
+  double mass, inertia, time;
+};
+struct held exchange_held(const struct exchange *exchange, const struct discs *discs, size_t disc);
 
 /* The exchange (force, torque) on the disc if it moves with the given velocity: (P, L) - M V. */
 void exchange_force(const struct moment_sums *g, double vx, double vy, double omega, double force[3]);

@@ -7,11 +7,6 @@ static int precedence(enum side_type type)
   return order[type];
 }
 
-static bool bounces(const struct side *side)
-{
-  return side->type == SIDE_WALL || side->type == SIDE_INLET;
-}
-
 /* slot[to + k] = slot[from + k] + add for k < n. */
 static void move(struct populations *p, size_t to, size_t from, int n, double add)
 {
@@ -37,7 +32,25 @@ static bool ruled_by_end(const struct populations *p, const struct side side[SID
   return precedence(side[from_y < 0 ? SIDE_BOTTOM : SIDE_TOP].type) >= precedence(own->type);
 }
 
-/* The three links of cell (x, y) to the left (inward +1) or right (inward -1) side. */
+/* The link of direction i from the ghost (gx, gy) of an outlet. What arrives is what its edge cell, the nearest in the box or the
+ * periodic image of that, sends the same way: before the sweep that waits where parity 0 left it, afterwards where the cell
+ * has written it. */
+static void outlet_link(struct populations *p, bool periodic_x, int i, int gx, int gy, bool before)
+{
+  const int ex = d2q9_ex[i], ey = d2q9_ey[i], o = d2q9_opposite[i], nx = p->nx, ny = p->ny;
+  const int x = gx < 0 ? (periodic_x ? nx - 1 : 0) : gx < nx ? gx : (periodic_x ? 0 : nx - 1);
+  const int y = gy < 0 ? 0 : gy < ny ? gy : ny - 1;
+  double excess = 0;
+  for (int k = 0; k < Q; k++)
+    excess += populations_get(p, before ? populations_slot(p, k, x, y)
+                                        : populations_slot(p, k, x + d2q9_ex[k], y + d2q9_ey[k]));
+  const size_t from = before ? populations_slot(p, o, x, y) : populations_slot(p, i, x + ex, y + ey);
+  const size_t to = before ? populations_slot(p, o, gx, gy) : populations_slot(p, i, gx + ex, gy + ey);
+  populations_set(p, to, populations_get(p, from) - boundary_outlet_hold * d2q9_weight[i] * excess);
+}
+
+/* The links of row y to the left (inward +1) or right (inward -1) side: of an outlet those from the ghost beside the row, of
+ * other sides those to the cell at its end. */
 static void side_links(struct populations *p, const struct side side[SIDE_COUNT], int y, int inward, bool before)
 {
   static const int inward_east[3] = {1, 5, 8}, inward_west[3] = {3, 6, 7};
@@ -45,23 +58,17 @@ static void side_links(struct populations *p, const struct side side[SIDE_COUNT]
   const int x = inward > 0 ? 0 : p->nx - 1, far = p->nx - 1 - x;
   for (int k = 0; k < 3; k++) {
     const int i = inward > 0 ? inward_east[k] : inward_west[k], o = d2q9_opposite[i];
-    const int from_y = y - d2q9_ey[i], to_y = y + d2q9_ey[i];
-    if (own->type == SIDE_OUTLET && !before) { /* what this row sent inwards also arrives one cell further out */
-      if (inside_y(p, to_y)) move(p, populations_slot(p, i, x, to_y), populations_slot(p, i, x + inward, to_y), 1, 0);
+    const int from_y = y - d2q9_ey[i];
+    if (own->type == SIDE_OUTLET) {
+      if (inside_y(p, y + d2q9_ey[i])) outlet_link(p, false, i, x - inward, y, before);
       continue;
     }
     if (ruled_by_end(p, side, own, from_y)) continue;
+    const bool periodic = own->type == SIDE_PERIODIC;
     const size_t ghost = populations_slot(p, o, x - inward, from_y);
-    if (bounces(own)) {
-      const size_t stays = populations_slot(p, i, x, y);
-      const double add = d2q9_wall_momentum(i, own->velocity);
-      move(p, before ? ghost : stays, before ? stays : ghost, 1, add);
-    } else if (own->type == SIDE_PERIODIC) {
-      const size_t wrapped = populations_slot(p, o, far, from_y);
-      move(p, before ? ghost : wrapped, before ? wrapped : ghost, 1, 0);
-    } else {
-      move(p, ghost, populations_slot(p, o, x, from_y), 1, 0);
-    }
+    const size_t inside = periodic ? populations_slot(p, o, far, from_y) : populations_slot(p, i, x, y);
+    const double add = periodic ? 0 : d2q9_wall_momentum(i, own->velocity);
+    move(p, before ? ghost : inside, before ? inside : ghost, 1, add);
   }
 }
 
@@ -76,27 +83,13 @@ static void end_links(struct populations *p, const struct side side[SIDE_COUNT],
     int first = 0, end = p->nx; /* the cells whose link belongs to this side */
     if (ex > 0 && precedence(side[SIDE_LEFT].type) > precedence(own->type)) first++;
     if (ex < 0 && precedence(side[SIDE_RIGHT].type) > precedence(own->type)) end--;
-    const int n = end - first;
-    const size_t ghost = populations_slot(p, o, first - ex, y - inward);
-    if (bounces(own)) {
-      const size_t stays = populations_slot(p, i, first, y);
-      const double add = d2q9_wall_momentum(i, own->velocity);
-      move(p, before ? ghost : stays, before ? stays : ghost, n, add);
-    } else if (before) {
-      move(p, ghost, populations_slot(p, o, first - ex, y), n, 0);
-      /* the column beside the corner is itself a ghost: take the periodic image, or the corner cell */
-      if (ex > 0 && first == 0) move(p, ghost, populations_slot(p, o, periodic_x ? p->nx - 1 : 0, y), 1, 0);
-      if (ex < 0 && end == p->nx)
-        move(p, ghost + (size_t)n - 1, populations_slot(p, o, periodic_x ? 0 : p->nx - 1, y), 1, 0);
-    } else {
-      const int lo = ex > 0 ? 1 : 0, hi = ex < 0 ? p->nx - 1 : p->nx; /* where row y has written one row further in */
-      move(p, populations_slot(p, i, lo, y), populations_slot(p, i, lo, y + inward), hi - lo, 0);
-      const int corner = ex > 0 ? 0 : p->nx - 1, image = ex > 0 ? p->nx : -1, inner = corner + ex;
-      const bool own_corner = ex > 0 ? first == 0 : end == p->nx;
-      if (ex && own_corner)
-        move(p, populations_slot(p, i, corner, y), populations_slot(p, i, periodic_x ? image : inner, y + inward), 1,
-             0);
+    if (own->type == SIDE_OUTLET) {
+      for (int x = first; x < end; x++) outlet_link(p, periodic_x, i, x - ex, y - inward, before);
+      continue;
     }
+    const size_t ghost = populations_slot(p, o, first - ex, y - inward);
+    const size_t inside = populations_slot(p, i, first, y);
+    move(p, before ? ghost : inside, before ? inside : ghost, end - first, d2q9_wall_momentum(i, own->velocity));
   }
 }
 
@@ -121,5 +114,7 @@ void boundary_after_row(struct populations *p, const struct side side[SIDE_COUNT
 
 bool boundary_fill_first(const struct side side[SIDE_COUNT])
 {
-  return side[SIDE_BOTTOM].type == SIDE_OUTLET || side[SIDE_TOP].type == SIDE_OUTLET;
+  for (int k = 0; k < SIDE_COUNT; k++)
+    if (side[k].type == SIDE_OUTLET) return true;
+  return false;
 }

@@ -6,15 +6,20 @@
  *
  *   wall, inlet  half-way bounce-back: what left comes back with the wall's momentum (6 w rho e.u at the reference density).
  *   periodic     what left on the other side. In y the addresses wrap by themselves (populations.h).
- *   outlet       zero gradient along the normal: what arrives is what arrives one cell further in.
+ *   outlet       zero gradient along the normal: what arrives is what the edge cell itself sends inwards, but for a tenth of the
+ *                cell's excess density. That holds the mean pressure, which a bare zero gradient lets drift, and is weak
+ *                enough to reflect little sound.
  *
  * Each row has passes of its own that touch only slots of that row's cells: rows may run in any order and on any thread. The
- * one exception is an outlet at the bottom or top, whose ghosts are copied from slots of the second row: there all rows must
- * be filled before any is swept (boundary_fill_first). At a corner a wall wins over an inlet, that over an outlet, that over a periodic side; y wins over x among equals. */
+ * one exception is an outlet, whose ghosts are made from slots of other rows' cells: there all rows must be filled before any
+ * is swept (boundary_fill_first). At a corner a wall wins over an inlet, that over an outlet, that over a periodic side; y wins over x among equals. */
 #ifndef DELBM_FLUID_BOUNDARY_H
 #define DELBM_FLUID_BOUNDARY_H
 
 #include "fluid/populations.h"
+
+/* The part of an edge cell's excess density that an outlet takes away each step. */
+static const double boundary_outlet_hold = 0.1;
 
 /* Fills the ghosts that row y reads in a step of parity 1. May be repeated before that step. */
 void boundary_before_row(struct populations *populations, const struct side side[SIDE_COUNT], int y);

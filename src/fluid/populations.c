@@ -1,6 +1,7 @@
 #include "fluid/populations.h"
 
 #include "base/memory.h"
+#include "base/threads.h"
 
 #include <string.h>
 
@@ -49,7 +50,7 @@ bool populations_create(struct populations *p, int nx, int ny, bool periodic_y, 
   p->block = memory_map(p->bytes, "the populations", status);
   if (!p->block) return false;
   const size_t row = p->pitch * value_size(precision);
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) num_threads(threads_for((int64_t)nx *ny))
   for (int y = 0; y < ny; y++) {
     for (size_t i = 0; i < Q; i++) {
       char *plane = (char *)p->block + i * p->plane * value_size(precision);

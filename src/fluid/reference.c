@@ -1,6 +1,7 @@
 #include "fluid/reference.h"
 
 #include "base/memory.h"
+#include "fluid/boundary.h"
 #include "lattice/moments.h"
 
 #include <stdlib.h>
@@ -84,15 +85,19 @@ static int wrap_or_clamp(int s, int n, bool periodic)
 
 static double streamed(const struct reference *r, const struct side side[SIDE_COUNT], int x, int y, int i)
 {
-  int sx = x - d2q9_ex[i], sy = y - d2q9_ey[i];
+  const int sx = x - d2q9_ex[i], sy = y - d2q9_ey[i];
   const struct side *ruling = ruling_side(side, sx, sy, r->nx, r->ny);
   if (ruling && (ruling->type == SIDE_WALL || ruling->type == SIDE_INLET)) {
     const size_t own = ((size_t)y * (size_t)r->nx + (size_t)x) * Q;
     return r->collided[own + (size_t)d2q9_opposite[i]] + d2q9_wall_momentum(i, ruling->velocity);
   }
-  sx = wrap_or_clamp(sx, r->nx, side[SIDE_LEFT].type == SIDE_PERIODIC);
-  sy = wrap_or_clamp(sy, r->ny, side[SIDE_BOTTOM].type == SIDE_PERIODIC);
-  return r->collided[((size_t)sy * (size_t)r->nx + (size_t)sx) * Q + (size_t)i];
+  const int fx = wrap_or_clamp(sx, r->nx, side[SIDE_LEFT].type == SIDE_PERIODIC);
+  const int fy = wrap_or_clamp(sy, r->ny, side[SIDE_BOTTOM].type == SIDE_PERIODIC);
+  const double *from = r->collided + ((size_t)fy * (size_t)r->nx + (size_t)fx) * Q;
+  double excess = -1;
+  for (int k = 0; k < Q; k++) excess += from[k];
+  const bool outlet = ruling && ruling->type == SIDE_OUTLET;
+  return from[i] - (outlet ? boundary_outlet_hold * d2q9_weight[i] * excess : 0);
 }
 
 void reference_step(struct reference *r, const struct side side[SIDE_COUNT], const struct sweep_constants *constants,

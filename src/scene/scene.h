@@ -142,6 +142,11 @@ static inline bool scene_is_periodic(const struct scene *scene, int axis)
   return scene->domain.side[axis == 0 ? SIDE_LEFT : SIDE_BOTTOM].type == SIDE_PERIODIC;
 }
 
+static inline int64_t scene_cells(const struct scene *scene)
+{
+  return (int64_t)scene->domain.size[0] * scene->domain.size[1];
+}
+
 /* True where walls (resting or moving along themselves) close the axis, so that its mean volume flux is zero. */
 static inline bool scene_is_closed(const struct scene *scene, int axis)
 {

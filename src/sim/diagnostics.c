@@ -1,5 +1,6 @@
 #include "sim/diagnostics.h"
 
+#include "base/threads.h"
 #include "fluid/boundary.h"
 
 #include <math.h>
@@ -29,7 +30,7 @@ static void fill_ghosts(struct populations *p, const struct side side[SIDE_COUNT
 struct fluid_totals diagnostics_totals(struct populations *p, const struct side side[SIDE_COUNT])
 {
   struct fluid_totals totals = {0};
-#pragma omp parallel for ordered schedule(static, 1)
+#pragma omp parallel for ordered schedule(static, 1) num_threads(threads_for((int64_t)p->nx * p->ny))
   for (int y = 0; y < p->ny; y++) {
     struct fluid_totals row = {0};
     fill_ghosts(p, side, y);
@@ -74,7 +75,7 @@ static struct worst_cell worst_of_row(const struct populations *p, int y)
 struct worst_cell diagnostics_worst(struct populations *p, const struct side side[SIDE_COUNT])
 {
   struct worst_cell worst = {.speed2 = -1};
-#pragma omp parallel
+#pragma omp parallel num_threads(threads_for((int64_t)p->nx * p->ny))
   {
     struct worst_cell own = {.speed2 = -1};
 #pragma omp for schedule(static) nowait
@@ -92,7 +93,7 @@ struct worst_cell diagnostics_worst(struct populations *p, const struct side sid
 void diagnostics_fields(struct populations *p, const struct side side[SIDE_COUNT], const double force[2],
                         const double uniform[2], double *density, double *ux, double *uy)
 {
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) num_threads(threads_for((int64_t)p->nx * p->ny))
   for (int y = 0; y < p->ny; y++) {
     fill_ghosts(p, side, y);
     for (int x = 0; x < p->nx; x++) {

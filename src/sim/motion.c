@@ -228,6 +228,19 @@ static double into_box(const struct scene *scene, int axis, double at)
   return at >= size ? at - size : at;
 }
 
+/* The force that holds a light disc goes over to p, its memory of past acceleration. */
+static void release(struct exchange *e, const struct discs *d, size_t i, const double dv[3], double force[3])
+{
+  const struct held held = exchange_held(e, d, i);
+  const double mass[3] = {held.mass, held.mass, held.inertia};
+  for (int k = 0; k < 3 && held.time > 0; k++) {
+    double *p = &e->memory[3 * i + (size_t)k];
+    const double change = dv[k] - *p / held.time;
+    force[k] -= mass[k] * change;
+    *p += change;
+  }
+}
+
 /* New velocity, the forces that made it, new place. */
 static void finish_disc(const struct motion *m, struct exchange *e, struct discs *d, size_t i)
 {
@@ -243,6 +256,7 @@ static void finish_disc(const struct motion *m, struct exchange *e, struct discs
 
   double force[3];
   exchange_force(&e->gathered[i], e->surface[i].vx, e->surface[i].vy, e->surface[i].omega, force);
+  release(e, d, i, (const double[3]){dvx, dvy, domega}, force);
   d->fx[i] = force[0] + (implicit ? d->fluid_mass[i] * dvx : 0);
   d->fy[i] = force[1] + (implicit ? d->fluid_mass[i] * dvy : 0);
   d->torque[i] = force[2] + (implicit ? d->fluid_inertia[i] * domega : 0);

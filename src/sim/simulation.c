@@ -1,13 +1,13 @@
 #include "sim/simulation.h"
 
 #include "base/memory.h"
+#include "base/threads.h"
 #include "fluid/boundary.h"
 #include "sim/diagnostics.h"
 #include "sim/flow.h"
 #include "sim/motion.h"
 
 #include <math.h>
-#include <omp.h>
 #include <stdlib.h>
 
 struct simulation {
@@ -21,6 +21,7 @@ struct simulation {
   struct team team;
   struct stage_times times;
   int64_t step;
+  int threads; /* of the parallel region */
   double initial_momentum[2];
   double max_mach;
 };
@@ -35,6 +36,10 @@ static void conserved_momentum(struct simulation *s, double momentum[2])
     const double mass = s->discs.mass[i] - s->discs.fluid_mass[i];
     momentum[0] += mass * s->discs.vx[i];
     momentum[1] += mass * s->discs.vy[i];
+    if (!s->exchange.memory) continue;
+    const double held = exchange_held(&s->exchange, &s->discs, i).mass;
+    momentum[0] += held * s->exchange.memory[3 * i];
+    momentum[1] += held * s->exchange.memory[3 * i + 1];
   }
 }
 
@@ -125,7 +130,7 @@ static void step(struct simulation *s, double *since)
 /* Steps up to the next look for divergence, in one parallel region. */
 static void run_steps(struct simulation *s, int64_t steps)
 {
-#pragma omp parallel
+#pragma omp parallel num_threads(s->threads)
   {
     double since = clock_now();
     for (int64_t k = 0; k < steps && !s->team.stop; k++) {
@@ -160,7 +165,8 @@ bool simulation_check(struct simulation *s, struct status *status)
 
 bool simulation_advance(struct simulation *s, int64_t steps, struct status *status)
 {
-  if (!flow_prepare(&s->flow, omp_get_max_threads(), status)) return false;
+  s->threads = threads_for(scene_cells(s->scene));
+  if (!flow_prepare(&s->flow, s->threads, status)) return false;
   const int64_t end = s->step + steps, look = s->scene->run.check;
   while (s->step < end) {
     const int64_t until_look = look - s->step % look;
@@ -186,6 +192,11 @@ const struct scene *simulation_scene(const struct simulation *s)
 const struct discs *simulation_discs(const struct simulation *s)
 {
   return &s->discs;
+}
+
+const struct occupation *simulation_occupation(const struct simulation *s)
+{
+  return s->plan.exchange ? &s->occupation : NULL;
 }
 
 void simulation_fields(struct simulation *s, double *density, double *ux, double *uy)
@@ -216,7 +227,7 @@ void simulation_report(struct simulation *s, struct simulation_report *report)
 {
   const double cells = (double)s->scene->domain.size[0] * s->scene->domain.size[1];
   *report = (struct simulation_report){
-      .threads = omp_get_max_threads(),
+      .threads = threads_for(scene_cells(s->scene)),
       .kernel = s->flow.kernel->name,
       .times = s->times,
       .mass_drift = fabs(diagnostics_totals(&s->flow.populations, s->scene->domain.side).excess_mass) / cells,

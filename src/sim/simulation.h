@@ -7,6 +7,7 @@
 #include "scene/scene.h"
 #include "solid/discs.h"
 
+struct occupation;
 struct simulation;
 
 /* Sets up fluid at rest (density 1) and the scene's discs. The scene must outlive the simulation. */
@@ -23,6 +24,9 @@ bool simulation_check(struct simulation *simulation, struct status *status);
 int64_t simulation_step(const struct simulation *simulation);
 const struct scene *simulation_scene(const struct simulation *simulation);
 const struct discs *simulation_discs(const struct simulation *simulation);
+
+/* Who covers what, as of the last step's start; NULL in a scene without discs. */
+const struct occupation *simulation_occupation(const struct simulation *simulation);
 
 /* Density and velocity of every cell, row by row from the bottom: arrays of size[0] * size[1]. Any may be NULL. */
 void simulation_fields(struct simulation *simulation, double *density, double *ux, double *uy);

@@ -21,7 +21,9 @@ static inline struct disc_line disc_line_at(double radius, double t)
 {
   if (fabs(t) >= radius) return (struct disc_line){t, 0, copysign(M_PI / 4 * radius * radius, t)};
   const double h = sqrt((radius - t) * (radius + t));
-  return (struct disc_line){t, h, 0.5 * (radius * radius * asin(t / radius) + t * h)};
+  /* near +-R the arcsine of t/R would turn round-off into its root, 1e-8 */
+  const double angle = fabs(t) < h ? asin(t / radius) : copysign(M_PI / 2 - asin(h / radius), t);
+  return (struct disc_line){t, h, 0.5 * (radius * radius * angle + t * h)};
 }
 
 /* area(a, b) for the corner of the lines x = a and y = b. */

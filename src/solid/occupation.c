@@ -118,12 +118,13 @@ static void paint_row(double radius, double three_nu, const struct disc_line *lo
   }
 }
 
-/* Lines are taken at their distance from the centre, computed as line - centre: the same bits wherever they are needed. */
+/* Lines are taken at their distance from the centre, computed as line - centre: the same bits wherever they are
+ * needed. For a row, round-off may put the disc's right edge past column_end: hence one line more. */
 static void paint_disc(struct occupation *o, size_t disc, double radius, double x, double y, struct disc_line *columns)
 {
   const int column = (int)floor(x - radius), column_end = (int)ceil(x + radius);
   const int row = (int)floor(y - radius), row_end = (int)ceil(y + radius);
-  for (int c = column; c <= column_end; c++) columns[c - column] = disc_line_at(radius, c - x);
+  for (int c = column; c <= column_end + 1; c++) columns[c - column] = disc_line_at(radius, c - x);
   size_t cell = o->first_cell[disc];
   struct disc_line low = disc_line_at(radius, row - y);
   for (int r = row; r < row_end; r++) {

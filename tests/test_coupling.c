@@ -1,0 +1,305 @@
+/* Fluid and discs together: what is conserved, what is stable, how discs start and settle. */
+#include "scenes.h"
+#include "sim/simulation.h"
+#include "solid/occupation.h"
+
+#include <criterion/criterion.h>
+#include <gsl/gsl_rng.h>
+#include <math.h>
+#include <omp.h>
+#include <stdlib.h>
+
+static struct simulation *start(const struct scene *scene)
+{
+  struct simulation *simulation;
+  struct status status;
+  cr_assert(simulation_create(&simulation, scene, &status), "%s", status.message);
+  return simulation;
+}
+
+static void advance(struct simulation *simulation, int64_t steps)
+{
+  struct status status;
+  cr_assert(simulation_advance(simulation, steps, &status), "%s", status.message);
+}
+
+static struct simulation_report report_of(struct simulation *simulation)
+{
+  struct simulation_report report;
+  simulation_report(simulation, &report);
+  return report;
+}
+
+/* Discs on a square grid, a random velocity each. */
+static struct scene moving_discs(int n, double spacing, double radius, double density, double speed, enum sides sides)
+{
+  const int size = (int)lround(n * spacing);
+  struct scene scene = scene_box(size, size, 0.02, sides);
+  gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
+  for (int k = 0; k < n * n; k++) {
+    const double jitter = 0.3 * (gsl_rng_uniform(random) - 0.5);
+    struct disc_spec *disc =
+        scene_add_disc(&scene, radius, density, (k % n + 0.5) * spacing + jitter, (k / n + 0.5) * spacing - jitter);
+    disc->velocity[0] = speed * (2 * gsl_rng_uniform(random) - 1);
+    disc->velocity[1] = speed * (2 * gsl_rng_uniform(random) - 1);
+    disc->spin = speed / radius * (2 * gsl_rng_uniform(random) - 1);
+  }
+  gsl_rng_free(random);
+  return scene;
+}
+
+Test(conservation, mass_is_constant_in_a_closed_box_with_moving_discs)
+{
+  struct scene scene = moving_discs(4, 24, 7, 1.5, 0.03, SIDES_CLOSED);
+  scene.particles.gravity[1] = -2e-4;
+  scene.fluid.zero_flux = true;
+  struct simulation *simulation = start(&scene);
+  advance(simulation, 10000);
+  cr_expect_lt(report_of(simulation).mass_drift, 1e-12);
+  simulation_destroy(simulation);
+  scene_clear(&scene);
+}
+
+/* Cells with more than two owners, by their number in the bands' lists: each owner of a shared cell is listed once. */
+static size_t shares_beyond_two(const struct occupation *o)
+{
+  size_t beyond = 0;
+  for (int k = 0; k < o->band_count; k++) beyond += o->bands[k].shared_count - 2 * o->bands[k].shared_cells;
+  return beyond;
+}
+
+static size_t shared_cells(const struct occupation *o)
+{
+  size_t cells = 0;
+  for (int k = 0; k < o->band_count; k++) cells += o->bands[k].shared_cells;
+  return cells;
+}
+
+static void expect_momentum_kept(enum coupling_form form, enum contact_area area)
+{
+  struct scene scene = moving_discs(6, 18, 6.3, 1.3, 0.04, SIDES_PERIODIC);
+  scene.coupling.form = form;
+  scene.contact.area = area;
+  scene.contact.stiffness = 0.02;
+  /* three more, pressed into one place */
+  scene_add_disc(&scene, 6, 2, 50, 50)->velocity[0] = 0.05;
+  scene_add_disc(&scene, 6, 2, 58, 50)->velocity[0] = -0.05;
+  scene_add_disc(&scene, 6, 2, 54, 56)->velocity[1] = -0.05;
+  double scale = 0; /* of the momentum that is exchanged */
+  for (size_t k = 0; k < scene.particles.count; k++) {
+    const struct disc_spec *disc = &scene.particles.discs[k];
+    scale += disc->density * M_PI * disc->radius * disc->radius * hypot(disc->velocity[0], disc->velocity[1]);
+  }
+  struct simulation *simulation = start(&scene);
+  size_t twos = 0, threes = 0, crossings = 0;
+  const struct discs *discs = simulation_discs(simulation);
+  double previous = discs->x[0];
+  for (int k = 0; k < 40; k++) {
+    for (int step = 0; step < 50; step++) {
+      advance(simulation, 1);
+      crossings += fabs(discs->x[0] - previous) > 50;
+      previous = discs->x[0];
+      twos += shared_cells(simulation_occupation(simulation));
+      threes += shares_beyond_two(simulation_occupation(simulation));
+    }
+  }
+  const double drift = report_of(simulation).momentum_drift * scene.domain.size[0] * scene.domain.size[1];
+  cr_expect_lt(drift / scale, 1e-10, "form %d, area %d: %g", form, area, drift / scale);
+  cr_expect_gt(twos, 1000, "discs overlap: %zu", twos);
+  cr_expect_gt(threes, 100, "cells have three owners: %zu", threes);
+  (void)crossings;
+  simulation_destroy(simulation);
+  scene_clear(&scene);
+}
+
+Test(conservation, momentum_is_constant_while_discs_collide_and_cross_periodic_sides)
+{
+  expect_momentum_kept(FORM_OWEN, AREA_LENS);
+  expect_momentum_kept(FORM_UNIFIED, AREA_LENS);
+  expect_momentum_kept(FORM_OWEN, AREA_CELLS);
+}
+
+Test(conservation, a_free_disc_accelerates_by_the_forces_reported_for_it)
+{
+  struct scene scene = moving_discs(4, 16, 7, 1.7, 0.05, SIDES_CLOSED);
+  scene.particles.gravity[0] = 1e-5;
+  scene.particles.gravity[1] = -3e-4;
+  scene.fluid.zero_flux = true;
+  struct simulation *simulation = start(&scene);
+  const struct discs *d = simulation_discs(simulation);
+  double contacts = 0;
+  for (int step = 0; step < 400; step++) {
+    double before[16][3];
+    for (size_t i = 0; i < d->count; i++) before[i][0] = d->vx[i], before[i][1] = d->vy[i], before[i][2] = d->omega[i];
+    advance(simulation, 1);
+    for (size_t i = 0; i < d->count; i++) {
+      const double buoyant = d->mass[i] - d->fluid_mass[i];
+      const double fx = d->fx[i] + d->contact_fx[i] + buoyant * scene.particles.gravity[0];
+      const double fy = d->fy[i] + d->contact_fy[i] + buoyant * scene.particles.gravity[1];
+      cr_assert_float_eq(d->mass[i] * (d->vx[i] - before[i][0]), fx, 1e-12, "step %d disc %zu", step, i);
+      cr_assert_float_eq(d->mass[i] * (d->vy[i] - before[i][1]), fy, 1e-12, "step %d disc %zu", step, i);
+      cr_assert_float_eq(d->inertia[i] * (d->omega[i] - before[i][2]), d->torque[i], 1e-11, "step %d disc %zu", step,
+                         i);
+      contacts += fabs(d->contact_fx[i]) + fabs(d->contact_fy[i]);
+    }
+  }
+  cr_expect_gt(contacts, 0, "some discs have touched");
+  simulation_destroy(simulation);
+  scene_clear(&scene);
+}
+
+/* All of a disc's state after a run with so many threads. */
+static void state_after(const struct scene *scene, int threads, int64_t steps, double *state)
+{
+  omp_set_num_threads(threads);
+  struct simulation *simulation = start(scene);
+  advance(simulation, steps);
+  const struct discs *d = simulation_discs(simulation);
+  const double *const arrays[] = {d->x,  d->y,  d->vx,     d->vy,         d->omega,
+                                  d->fx, d->fy, d->torque, d->contact_fx, d->contact_fy};
+  for (size_t k = 0; k < 10; k++) memcpy(state + k * d->count, arrays[k], d->count * sizeof *state);
+  simulation_fields(simulation, state + 10 * d->count, NULL, NULL);
+  simulation_destroy(simulation);
+}
+
+Test(reproducibility, any_number_of_threads_gives_the_same_bits)
+{
+  static const int threads[] = {1, 2, 3, 4, 7};
+  for (int sides = 0; sides < 2; sides++) {
+    struct scene scene = moving_discs(7, 26, 11.5, 1.2, 0.05, sides ? SIDES_CLOSED : SIDES_PERIODIC);
+    scene.fluid.zero_flux = sides;
+    scene.particles.gravity[1] = -1e-4;
+    const size_t count = 10 * 49 + (size_t)(scene.domain.size[0] * scene.domain.size[1]);
+    double *first = malloc(count * sizeof *first), *other = malloc(count * sizeof *other);
+    state_after(&scene, threads[0], 301, first);
+    for (size_t k = 1; k < sizeof threads / sizeof threads[0]; k++) {
+      state_after(&scene, threads[k], 301, other);
+      cr_expect_eq(memcmp(first, other, count * sizeof *first), 0, "%d threads differ from 1", threads[k]);
+    }
+    free(first);
+    free(other);
+    scene_clear(&scene);
+  }
+}
+
+Test(reproducibility, results_do_not_depend_on_how_steps_are_grouped)
+{
+  struct scene scene = moving_discs(5, 14, 5, 1.2, 0.05, SIDES_CLOSED);
+  struct simulation *whole = start(&scene), *parts = start(&scene);
+  advance(whole, 120);
+  for (int k = 0; k < 40; k++) advance(parts, 1 + (k % 3) * 2);
+  cr_assert_eq(simulation_step(parts), 118);
+  advance(parts, 2);
+  const struct discs *a = simulation_discs(whole), *b = simulation_discs(parts);
+  cr_expect_eq(memcmp(a->x, b->x, a->count * sizeof *a->x), 0);
+  cr_expect_eq(memcmp(a->vy, b->vy, a->count * sizeof *a->vy), 0);
+  cr_expect_eq(memcmp(a->torque, b->torque, a->count * sizeof *a->torque), 0);
+  simulation_destroy(whole);
+  simulation_destroy(parts);
+  scene_clear(&scene);
+}
+
+/* Added mass of a cylinder: (m + m_f) a = (m - m_f) g, once sound has carried the flow around the disc and before viscosity has
+ * spread: what remains is its history force, 4 % at the smallest ratio. */
+Test(motion, a_released_disc_starts_with_the_added_mass_of_a_cylinder)
+{
+  static const double ratios[] = {0.2, 0.5, 2, 10};
+  for (int k = 0; k < 4; k++) {
+    const double radius = 24, gravity = 1e-6;
+    struct scene scene = scene_box(400, 400, 1e-5, SIDES_PERIODIC);
+    scene.coupling.form = FORM_UNIFIED;
+    scene_add_disc(&scene, radius, ratios[k], 200.3, 200.4);
+    scene.particles.gravity[1] = -gravity;
+    struct simulation *simulation = start(&scene);
+    const struct discs *d = simulation_discs(simulation);
+    advance(simulation, 300);
+    const double before = d->vy[0];
+    advance(simulation, 200);
+    const double expected = -(ratios[k] - 1) / (ratios[k] + 1) * gravity, obtained = (d->vy[0] - before) / 200;
+    cr_expect(fabs(obtained / expected - 1) < 0.05, "ratio %g: %g, expected %g", ratios[k], obtained, expected);
+    simulation_destroy(simulation);
+    scene_clear(&scene);
+  }
+}
+
+Test(motion, a_settling_crowd_in_a_closed_box_sinks_steadily_without_ringing)
+{
+  struct scene scene = scene_box(400, 400, 0.05, SIDES_CLOSED);
+  for (int k = 0; k < 400; k++)
+    scene_add_disc(&scene, 5, 1.5, (k % 20 + 0.5) * 20 + 1e-3 * (k % 7), (k / 20 + 0.5) * 20);
+  scene.particles.gravity[1] = -5e-4;
+  scene.fluid.zero_flux = true;
+  struct simulation *simulation = start(&scene);
+  const struct discs *d = simulation_discs(simulation);
+  double height = 1e9, *density = malloc(400 * 400 * sizeof *density), low = 1, high = 1;
+  for (int k = 0; k < 40; k++) {
+    advance(simulation, 50);
+    double mean = 0;
+    for (size_t i = 0; i < d->count; i++) mean += d->y[i] / (double)d->count;
+    cr_expect_lt(mean, height, "mean height at step %d", 50 * (k + 1));
+    height = mean;
+    simulation_fields(simulation, density, NULL, NULL);
+    for (int c = 0; c < 400 * 400; c++) low = fmin(low, density[c]), high = fmax(high, density[c]);
+  }
+  cr_expect(low > 0.97 && high < 1.03, "density between %g and %g", low, high);
+  free(density);
+  simulation_destroy(simulation);
+  scene_clear(&scene);
+}
+
+Test(stability, the_implicit_solve_is_stable_at_any_density_ratio, .timeout = 100)
+{
+  static const double ratios[] = {0.05, 0.3, 0.8, 1.0001, 1.01, 10, 100};
+  for (int form = 0; form < 2; form++)
+    for (size_t k = 0; k < sizeof ratios / sizeof ratios[0]; k++) {
+      struct scene scene = scene_box(64, 96, 0.05, SIDES_CLOSED);
+      scene.coupling.form = form;
+      scene.fluid.zero_flux = true;
+      scene_add_disc(&scene, 6, ratios[k], 30.2, 50);
+      scene_add_disc(&scene, 6, ratios[k], 30.0, 65);
+      scene.particles.gravity[1] = -2e-4 / fmax(1, ratios[k]);
+      struct simulation *simulation = start(&scene);
+      advance(simulation, 20000);
+      const struct discs *d = simulation_discs(simulation);
+      for (size_t i = 0; i < d->count; i++) {
+        cr_expect(d->x[i] > 5 && d->x[i] < 59 && d->y[i] > 5 && d->y[i] < 91, "ratio %g: disc %zu left the box",
+                  ratios[k], i);
+        cr_expect_lt(hypot(d->vx[i], d->vy[i]), 0.01, "ratio %g, form %d: disc %zu comes to rest, moves at %g",
+                     ratios[k], form, i, hypot(d->vx[i], d->vy[i]));
+      }
+      simulation_destroy(simulation);
+      scene_clear(&scene);
+    }
+}
+
+Test(stability, explicit_coupling_of_a_light_disc_diverges_and_says_so_soon)
+{
+  struct scene scene = scene_box(64, 64, 0.05, SIDES_CLOSED);
+  scene.coupling.solve = SOLVE_EXPLICIT_AVERAGED;
+  scene_add_disc(&scene, 8, 0.3, 32, 32);
+  scene.particles.gravity[1] = -1e-3;
+  struct simulation *simulation = start(&scene);
+  struct status status;
+  cr_assert_not(simulation_advance(simulation, 5000, &status));
+  cr_expect_eq(status.code, DELBM_FAILED);
+  cr_expect_lt(simulation_step(simulation), 1000);
+  cr_expect(strstr(status.message, "diverged") && strstr(status.message, "disc 0"), "%s", status.message);
+  cr_expect_not(simulation_check(simulation, &status), "and it stays failed");
+  simulation_destroy(simulation);
+  scene_clear(&scene);
+}
+
+Test(stability, fluid_too_fast_is_found_within_the_interval_of_looks)
+{
+  struct scene scene = scene_box(32, 32, 0.05, SIDES_PERIODIC);
+  scene.fluid.force[0] = 1e-3;
+  struct simulation *simulation = start(&scene);
+  struct status status;
+  cr_assert_not(simulation_advance(simulation, 5000, &status));
+  const int64_t exceeded = 347; /* step at which force * steps passes 0.6/sqrt(3) */
+  cr_expect(simulation_step(simulation) >= exceeded && simulation_step(simulation) <= exceeded + 100,
+            "stopped at %lld: %s", (long long)simulation_step(simulation), status.message);
+  cr_expect(strstr(status.message, "Mach"), "%s", status.message);
+  simulation_destroy(simulation);
+  scene_clear(&scene);
+}

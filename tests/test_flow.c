@@ -1,0 +1,140 @@
+/* Flows with exact solutions: channels, moving walls, ducts, and the drag of a square array of cylinders. */
+#include "scenes.h"
+#include "sim/simulation.h"
+
+#include <criterion/criterion.h>
+#include <math.h>
+#include <stdlib.h>
+
+static struct simulation *start(const struct scene *scene)
+{
+  struct simulation *simulation;
+  struct status status;
+  cr_assert(simulation_create(&simulation, scene, &status), "%s", status.message);
+  return simulation;
+}
+
+static void advance(struct simulation *simulation, int64_t steps)
+{
+  struct status status;
+  cr_assert(simulation_advance(simulation, steps, &status), "%s", status.message);
+}
+
+static struct scene channel(int height, double viscosity, bool along_x)
+{
+  struct scene scene = scene_box(along_x ? 3 : height, along_x ? height : 3, viscosity, SIDES_PERIODIC);
+  scene.domain.side[along_x ? SIDE_BOTTOM : SIDE_LEFT].type = SIDE_WALL;
+  scene.domain.side[along_x ? SIDE_TOP : SIDE_RIGHT].type = SIDE_WALL;
+  return scene;
+}
+
+/* Half-way bounce-back shifts a force-driven parabola by (16 Lambda - 3)/12 in (H_eff/2)^2, Lambda = (1/s_nu - 1/2)(1/s_q - 1/2):
+ * not at all with the magic parameter 3/16 (Ginzburg & d'Humieres 2003). */
+Test(channel, poiseuille_flow_has_the_slip_of_its_magic_parameter_and_no_other_error)
+{
+  static const double magics[] = {3.0 / 16, 0.05, 0.25};
+  const int height = 13;
+  for (int along_x = 0; along_x < 2; along_x++)
+    for (int m = 0; m < 3; m++) {
+      const double viscosity = 0.1, force = 1e-6;
+      struct scene scene = channel(height, viscosity, along_x);
+      scene.fluid.rates.q = rate_from_magic(magics[m], viscosity);
+      scene.fluid.force[along_x ? 0 : 1] = force;
+      struct simulation *simulation = start(&scene);
+      advance(simulation, 20000);
+      double u[39];
+      simulation_fields(simulation, NULL, along_x ? u : NULL, along_x ? NULL : u);
+      for (int k = 0; k < height; k++) {
+        const double at = k + 0.5 - height / 2.0, half2 = height * height / 4.0 + (16 * magics[m] - 3) / 12;
+        const double expected = force / (2 * viscosity) * (half2 - at * at),
+                     obtained = u[along_x ? 3 * k + 1 : k + height];
+        cr_expect(fabs(obtained / expected - 1) < 1e-9, "magic %g, cell %d: %.12g, expected %.12g", magics[m], k,
+                  obtained, expected);
+      }
+      simulation_destroy(simulation);
+      scene_clear(&scene);
+    }
+}
+
+Test(channel, couette_flow_is_linear_between_moving_walls)
+{
+  const int height = 10;
+  struct scene scene = channel(height, 0.1, true);
+  scene.domain.side[SIDE_BOTTOM].velocity[0] = -0.01;
+  scene.domain.side[SIDE_TOP].velocity[0] = 0.03;
+  struct simulation *simulation = start(&scene);
+  advance(simulation, 10001);
+  double u[30];
+  simulation_fields(simulation, NULL, u, NULL);
+  for (int k = 0; k < height; k++)
+    cr_expect_float_eq(u[3 * k + 1], -0.01 + 0.04 * (k + 0.5) / height, 1e-6, "cell %d: %g", k, u[3 * k + 1]);
+  simulation_destroy(simulation);
+  scene_clear(&scene);
+}
+
+Test(duct, what_enters_at_the_inlet_leaves_through_the_outlet)
+{
+  const int nx = 120, ny = 24;
+  struct scene scene = scene_box(nx, ny, 0.1, SIDES_CLOSED);
+  scene.domain.side[SIDE_LEFT] = (struct side){SIDE_INLET, {0.02, 0}};
+  scene.domain.side[SIDE_RIGHT].type = SIDE_OUTLET;
+  scene_use_magic(&scene);
+  struct simulation *simulation = start(&scene);
+  advance(simulation, 30000);
+  double *rho = malloc(sizeof(double) * nx * ny), *u = malloc(sizeof(double) * nx * ny);
+  simulation_fields(simulation, rho, u, NULL);
+  for (int x = 5; x < nx; x += 6) {
+    double flux = 0;
+    for (int y = 0; y < ny; y++) flux += rho[y * nx + x] * u[y * nx + x];
+    /* at its two ends the inlet meets walls, which keep the diagonal link: a sixth of a cell's flux each */
+    const double expected = 0.02 * (ny - 1.0 / 3);
+    cr_expect(fabs(flux / expected - 1) < 1e-6, "mass flux at %d: %.9g of %.9g", x, flux, expected);
+  }
+  /* far from the inlet, a parabola of this flux */
+  for (int y = 0; y < ny; y++) {
+    const double at = (y + 0.5) / ny, expected = 6 * at * (1 - at);
+    double flux = 0;
+    for (int k = 0; k < ny; k++) flux += u[k * nx + nx - 10];
+    const double obtained = u[y * nx + nx - 10] / (flux / ny);
+    cr_expect(fabs(obtained - expected) < 0.02, "y %d: %g, expected %g", y, obtained, expected);
+  }
+  free(rho);
+  free(u);
+  simulation_destroy(simulation);
+  scene_clear(&scene);
+}
+
+/* Runs until the mean velocity changes by less than 1e-6 over 200 steps; K = F/(mu U). */
+static double square_array_drag(const struct scene *scene, double *reported)
+{
+  const size_t cells = (size_t)scene->domain.size[0] * (size_t)scene->domain.size[1];
+  struct simulation *simulation = start(scene);
+  double *u = malloc(cells * sizeof *u), before = 0, drag = 1;
+  while (fabs(drag - before) > 1e-6 * drag) {
+    advance(simulation, 200);
+    simulation_fields(simulation, NULL, u, NULL);
+    double flux = 0;
+    for (size_t k = 0; k < cells; k++) flux += u[k];
+    before = drag;
+    drag = scene->fluid.force[0] * (double)(cells * cells) / (scene->fluid.viscosity * flux);
+  }
+  *reported = simulation_discs(simulation)->fx[0] / (scene->fluid.force[0] * (double)cells);
+  free(u);
+  simulation_destroy(simulation);
+  return drag;
+}
+
+/* Sangani & Acrivos 1982, Table 1: 51.53 at solid fraction 0.2. */
+Test(drag, of_a_square_array_is_right_within_2_5_percent_at_three_viscosities)
+{
+  static const double viscosities[] = {0.005, 0.05, 1.0 / 6};
+  for (int k = 0; k < 3; k++) {
+    struct scene scene = scene_square_array(5, 0.2, viscosities[k], 1e-6 * viscosities[k]);
+    scene_use_magic(&scene);
+    double reported;
+    const double drag = square_array_drag(&scene, &reported);
+    cr_expect(fabs(drag / 51.53 - 1) < 0.025, "viscosity %g: K = %g", viscosities[k], drag);
+    cr_expect_float_eq(reported, 1, 1e-4, "the disc bears the whole body force: %g", reported);
+    scene_clear(&scene);
+  }
+}
