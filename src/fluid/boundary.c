@@ -72,17 +72,18 @@ static void side_links(struct populations *p, const struct side side[SIDE_COUNT]
   }
 }
 
-/* The links of row y to the bottom (inward +1) or top (inward -1) side. */
-static void end_links(struct populations *p, const struct side side[SIDE_COUNT], int y, int inward, bool before)
+/* The links of cells x0 .. x1 - 1 of row y to the bottom (inward +1) or top (inward -1) side. */
+static void end_links(struct populations *p, const struct side side[SIDE_COUNT], int y, int x0, int x1, int inward,
+                      bool before)
 {
   static const int inward_north[3] = {2, 5, 6}, inward_south[3] = {4, 7, 8};
   const struct side *own = &side[inward > 0 ? SIDE_BOTTOM : SIDE_TOP];
   const bool periodic_x = side[SIDE_LEFT].type == SIDE_PERIODIC;
   for (int k = 0; k < 3; k++) {
     const int i = inward > 0 ? inward_north[k] : inward_south[k], o = d2q9_opposite[i], ex = d2q9_ex[i];
-    int first = 0, end = p->nx; /* the cells whose link belongs to this side */
-    if (ex > 0 && precedence(side[SIDE_LEFT].type) > precedence(own->type)) first++;
-    if (ex < 0 && precedence(side[SIDE_RIGHT].type) > precedence(own->type)) end--;
+    int first = x0, end = x1; /* the cells whose link belongs to this side */
+    if (ex > 0 && first == 0 && precedence(side[SIDE_LEFT].type) > precedence(own->type)) first++;
+    if (ex < 0 && end == p->nx && precedence(side[SIDE_RIGHT].type) > precedence(own->type)) end--;
     if (own->type == SIDE_OUTLET) {
       for (int x = first; x < end; x++) outlet_link(p, periodic_x, i, x - ex, y - inward, before);
       continue;
@@ -93,23 +94,33 @@ static void end_links(struct populations *p, const struct side side[SIDE_COUNT],
   }
 }
 
-static void row_links(struct populations *p, const struct side side[SIDE_COUNT], int y, bool before)
+static void links(struct populations *p, const struct side side[SIDE_COUNT], int y, int x0, int x1, bool before)
 {
-  side_links(p, side, y, +1, before);
-  side_links(p, side, y, -1, before);
+  if (x0 == 0) side_links(p, side, y, +1, before);
+  if (x1 == p->nx) side_links(p, side, y, -1, before);
   if (p->periodic_y) return;
-  if (y == 0) end_links(p, side, y, +1, before);
-  if (y == p->ny - 1) end_links(p, side, y, -1, before);
+  if (y == 0) end_links(p, side, y, x0, x1, +1, before);
+  if (y == p->ny - 1) end_links(p, side, y, x0, x1, -1, before);
+}
+
+void boundary_before(struct populations *p, const struct side side[SIDE_COUNT], int y, int x0, int x1)
+{
+  links(p, side, y, x0, x1, true);
+}
+
+void boundary_after(struct populations *p, const struct side side[SIDE_COUNT], int y, int x0, int x1)
+{
+  links(p, side, y, x0, x1, false);
 }
 
 void boundary_before_row(struct populations *p, const struct side side[SIDE_COUNT], int y)
 {
-  row_links(p, side, y, true);
+  links(p, side, y, 0, p->nx, true);
 }
 
 void boundary_after_row(struct populations *p, const struct side side[SIDE_COUNT], int y)
 {
-  row_links(p, side, y, false);
+  links(p, side, y, 0, p->nx, false);
 }
 
 bool boundary_fill_first(const struct side side[SIDE_COUNT])

@@ -24,6 +24,10 @@ static const double boundary_outlet_hold = 0.1;
 /* Fills the ghosts that row y reads in a step of parity 1. May be repeated before that step. */
 void boundary_before_row(struct populations *populations, const struct side side[SIDE_COUNT], int y);
 
+/* The same for cells x0 .. x1 - 1 of row y alone, where no side is an outlet. */
+void boundary_before(struct populations *populations, const struct side side[SIDE_COUNT], int y, int x0, int x1);
+void boundary_after(struct populations *populations, const struct side side[SIDE_COUNT], int y, int x0, int x1);
+
 /* True where boundary_before_row of every row must precede the sweep of any. */
 bool boundary_fill_first(const struct side side[SIDE_COUNT]);
 

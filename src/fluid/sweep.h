@@ -35,12 +35,16 @@ struct moment_sums {
 typedef void gather_run(void *const a[Q], int n, const struct sweep_constants *constants, const double *share,
                         double rx, double ry, struct moment_sums *sums);
 
+/* Largest |j/rho|^2 of n cells; NAN if one is not finite or has no positive density. */
+typedef double scan_row(void *const a[Q], int n);
+
 struct sweep_kernel {
   const char *name; /* for example avx512-double */
   enum precision precision;
   sweep_row *fluid[2];    /* [with a force?] */
   sweep_row *discs[2][2]; /* [enum coupling_form][with a force?] */
   gather_run *gather;
+  scan_row *scan;
 };
 
 /* The compiled-in kernels, best first, and whether this machine runs it; NULL past the last. */

@@ -126,6 +126,7 @@ ROW(sweep_discs_owen, true, true, false)
 ROW(sweep_discs_owen_force, true, true, true)
 
 extern gather_run KERNEL(gather_run);
+extern scan_row KERNEL(scan_row);
 extern const struct sweep_kernel KERNEL(sweep_kernel);
 const struct sweep_kernel KERNEL(sweep_kernel) = {
     .name = VARIANT_NAME,
@@ -133,4 +134,5 @@ const struct sweep_kernel KERNEL(sweep_kernel) = {
     .fluid = {sweep_fluid, sweep_fluid_force},
     .discs = {[FORM_UNIFIED] = {sweep_discs_unified, sweep_discs_unified_force},
               [FORM_OWEN] = {sweep_discs_owen, sweep_discs_owen_force}},
-    .gather = KERNEL(gather_run)};
+    .gather = KERNEL(gather_run),
+    .scan = KERNEL(scan_row)};

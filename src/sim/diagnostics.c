@@ -50,44 +50,45 @@ struct fluid_totals diagnostics_totals(struct populations *p, const struct side 
   return totals;
 }
 
-/* True where a is worse than b: faster, or not finite; of equals the first cell. */
-static bool worse(const struct worst_cell *a, const struct worst_cell *b)
-{
-  if (isnan(a->speed2) != isnan(b->speed2)) return isnan(a->speed2);
-  if (!isnan(a->speed2) && a->speed2 != b->speed2) return a->speed2 > b->speed2;
-  return a->y != b->y ? a->y < b->y : a->x < b->x;
-}
-
+/* The cell of row y that makes its speed what the scan found: the fastest, or the first that is not finite. */
 static struct worst_cell worst_of_row(const struct populations *p, int y)
 {
   struct worst_cell worst = {.speed2 = -1, .y = y};
   for (int x = 0; x < p->nx; x++) {
     const struct cell_moments m = moments_at(p, x, y);
     const double rho = 1 + m.excess, speed2 = (m.jx * m.jx + m.jy * m.jy) / (rho * rho);
-    const bool sound = isfinite(speed2) && rho > 0;
-    if (speed2 <= worst.speed2 && sound) continue;
-    worst = (struct worst_cell){sound ? speed2 : NAN, x, y};
-    if (!sound) break;
+    if (!isfinite(speed2) || rho <= 0) return (struct worst_cell){NAN, x, y};
+    if (speed2 > worst.speed2) worst = (struct worst_cell){speed2, x, y};
   }
   return worst;
 }
 
-struct worst_cell diagnostics_worst(struct populations *p, const struct side side[SIDE_COUNT])
+/* True where row speed a is worse than b: faster, or not finite. */
+static bool worse(double a, double b)
 {
-  struct worst_cell worst = {.speed2 = -1};
+  return isnan(a) ? !isnan(b) : a > b;
+}
+
+struct worst_cell diagnostics_worst(struct populations *p, scan_row *scan, const struct side side[SIDE_COUNT])
+{
+  double worst = -1;
+  int row = 0;
 #pragma omp parallel num_threads(threads_for((int64_t)p->nx * p->ny))
   {
-    struct worst_cell own = {.speed2 = -1};
+    double own = -1;
+    int own_row = 0;
 #pragma omp for schedule(static) nowait
     for (int y = 0; y < p->ny; y++) {
+      void *a[Q];
       fill_ghosts(p, side, y);
-      const struct worst_cell row = worst_of_row(p, y);
-      if (worse(&row, &own)) own = row;
+      populations_cells(p, 0, y, a);
+      const double speed2 = scan(a, p->nx);
+      if (worse(speed2, own)) own = speed2, own_row = y;
     }
 #pragma omp critical(diagnostics_worst)
-    if (worse(&own, &worst)) worst = own;
+    if (worse(own, worst) || (!worse(worst, own) && own_row < row)) worst = own, row = own_row;
   }
-  return worst;
+  return worst_of_row(p, row);
 }
 
 void diagnostics_fields(struct populations *p, const struct side side[SIDE_COUNT], const double force[2],

@@ -3,7 +3,7 @@
 #ifndef DELBM_SIM_DIAGNOSTICS_H
 #define DELBM_SIM_DIAGNOSTICS_H
 
-#include "fluid/populations.h"
+#include "fluid/sweep.h"
 #include "solid/discs.h"
 
 /* Speed of Mach 0.6, 0.6 c_s: beyond it the expansion behind the method has lost its meaning. */
@@ -22,7 +22,8 @@ struct worst_cell {
 
 /* Both read the populations that the coming step will collide; with parity 1 ghosts are filled first. Outside of parallel regions. */
 struct fluid_totals diagnostics_totals(struct populations *populations, const struct side side[SIDE_COUNT]);
-struct worst_cell diagnostics_worst(struct populations *populations, const struct side side[SIDE_COUNT]);
+struct worst_cell diagnostics_worst(struct populations *populations, scan_row *scan,
+                                    const struct side side[SIDE_COUNT]);
 
 /* Density and velocity (j + F/2)/rho, F = rho force + uniform, of every cell into arrays of nx * ny; any may be NULL. */
 void diagnostics_fields(struct populations *populations, const struct side side[SIDE_COUNT], const double force[2],

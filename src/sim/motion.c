@@ -179,9 +179,13 @@ static void push(struct motion *m, uint32_t i, double fx, double fy)
   t->fy += fy;
 }
 
-/* One sub-step of length h: forces at the trial places, then velocities, then places. */
+/* One sub-step of length h: forces at the trial places, then velocities, then places: a leapfrog, whose velocities lie half a
+ * sub-step before its places. The kick therefore lasts from the middle of the last sub-step to the middle of this one; a
+ * kick of h where h changes would gain energy. */
 static void substep(struct motion *m, const struct exchange *e, struct discs *d, double h)
 {
+  const double kick = 0.5 * (m->last_substep + h);
+  m->last_substep = h;
   for (size_t k = 0; k < m->contact_count; k++) {
     const struct contact *c = &m->contacts[k];
     const struct meeting at = meet(m, d, c);
@@ -192,10 +196,10 @@ static void substep(struct motion *m, const struct exchange *e, struct discs *d,
   for (size_t k = 0; k < m->trial_count; k++) {
     struct trial *t = &m->trials[k];
     const struct response *r = &e->response[t->disc];
-    d->contact_fx[t->disc] += h * t->fx;
-    d->contact_fy[t->disc] += h * t->fy;
-    t->vx += h * (r->dvx + r->xx * t->fx + r->xy * t->fy);
-    t->vy += h * (r->dvy + r->xy * t->fx + r->yy * t->fy);
+    d->contact_fx[t->disc] += kick * t->fx;
+    d->contact_fy[t->disc] += kick * t->fy;
+    t->vx += h * r->dvx + kick * (r->xx * t->fx + r->xy * t->fy);
+    t->vy += h * r->dvy + kick * (r->xy * t->fx + r->yy * t->fy);
     t->x += h * t->vx;
     t->y += h * t->vy;
     t->fx = t->fy = 0;

@@ -40,9 +40,10 @@ struct motion {
   size_t contact_count, contact_capacity;
   struct trial *trials;
   size_t trial_count, trial_capacity;
-  uint32_t *trial_of; /* of each disc, or NO_TRIAL */
-  int substeps;       /* of this step */
-  int most_substeps;  /* of any step */
+  uint32_t *trial_of;  /* of each disc, or NO_TRIAL */
+  int substeps;        /* of this step */
+  double last_substep; /* length of the last sub-step; 0 before the first */
+  int most_substeps;   /* of any step */
 };
 
 bool motion_create(struct motion *motion, const struct scene *scene, const struct plan *plan, const struct discs *discs,

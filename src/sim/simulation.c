@@ -147,7 +147,7 @@ bool simulation_check(struct simulation *s, struct status *status)
     *status = s->team.first;
     return false;
   }
-  const struct worst_cell worst = diagnostics_worst(&s->flow.populations, s->scene->domain.side);
+  const struct worst_cell worst = diagnostics_worst(&s->flow.populations, s->flow.kernel->scan, s->scene->domain.side);
   const double speed = sqrt(worst.speed2), mach = speed * sqrt(3);
   if (speed <= diagnostics_fastest) {
     s->max_mach = fmax(s->max_mach, mach);

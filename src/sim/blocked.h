@@ -1,0 +1,32 @@
+/* The sweep blocked in time: several steps of a scene without discs in one pass through memory.
+ *
+ * A row may take step s once it and its two neighbours have taken step s - 1 (populations.h: a step touches no further). So a
+ * wavefront can pass over the rows in which each step follows one row behind the last, and a row comes from memory once for
+ * `depth` steps. Rows are cut into tiles of `width` cells, each step shifted one cell to the left of the last, so that
+ * what a wavefront holds at once (depth + 2 rows of a tile) stays in the nearest cache. Where x is periodic the first tile
+ * retreats by a cell each step from the left side and the last one makes that up beyond the right.
+ *
+ * Threads take slabs of rows. Within a block a slab retreats by a row each step from slabs beside it (not from walls); when all
+ * have finished, what is missing around each border, a triangle that grows by a row each step, is made up. Every row
+ * takes every step once, with the same arithmetic as unblocked: the results are the same bits for any depth, width and
+ * number of threads. */
+#ifndef DELBM_SIM_BLOCKED_H
+#define DELBM_SIM_BLOCKED_H
+
+#include "sim/flow.h"
+
+struct blocking {
+  int depth; /* steps in a block; 1: not blocked */
+  int width; /* cells of a tile; 0: whole rows */
+};
+
+/* True if the scene can be blocked in time: no discs, nothing that sums over the box each step, no outlets. */
+bool blocked_possible(const struct scene *scene);
+
+/* The most steps a block can have in a box of ny rows shared by so many threads. */
+int blocked_deepest(int ny, int threads);
+
+/* Advances by `steps`, at most blocking->depth, in one block; called by all threads of a parallel region. */
+void stage_sweep_blocked(struct flow *flow, const struct blocking *blocking, int steps);
+
+#endif

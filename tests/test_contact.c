@@ -1,0 +1,435 @@
+/* Contact: overlap areas, the force law, and whole impacts of discs with discs and walls. */
+#include "contact/law.h"
+#include "contact/lens.h"
+#include "contact/overlap.h"
+#include "scenes.h"
+#include "sim/simulation.h"
+
+#include <criterion/criterion.h>
+#include <gsl/gsl_rng.h>
+#include <math.h>
+#include <omp.h>
+#include <stdlib.h>
+
+static gsl_rng *random_from(unsigned long seed)
+{
+  gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
+  cr_assert(random);
+  gsl_rng_set(random, seed);
+  return random;
+}
+
+static double between(gsl_rng *random, double low, double high)
+{
+  return low + (high - low) * gsl_rng_uniform(random);
+}
+
+Test(lens, areas_of_two_discs_are_those_of_the_reference)
+{
+  /* R_j (R_i = 1), delta* = delta (R_i + R_j)/(R_i R_j), area: shared/reference/lens_area.csv */
+  static const double rows[][3] = {{1, 0.001, 1.4906561e-05}, {1, 0.2, 0.041846049}, {1, 1, 0.45331175},
+                                   {1.5, 0.05, 0.0075734887}, {1.5, 1, 0.64858954},  {2, 0.01, 0.00083763311},
+                                   {3, 0.1, 0.033318309},     {5, 0.5, 0.44127482},  {10, 0.001, 4.9274173e-05},
+                                   {10, 0.05, 0.017324149},   {10, 1, 1.3565227}};
+  for (size_t k = 0; k < sizeof rows / sizeof rows[0]; k++) {
+    const double r = rows[k][0], overlap = rows[k][1] * r / (1 + r);
+    cr_expect_float_eq(lens_of_discs(1, r, 1 + r - overlap).area / rows[k][2], 1, 5e-8, "row %zu", k);
+  }
+}
+
+/* The textbook formula: loses digits at small overlap. */
+static double naive_lens(double ra, double rb, double d)
+{
+  const double a = (d * d + ra * ra - rb * rb) / (2 * d), b = d - a;
+  return ra * ra * acos(a / ra) - a * sqrt(ra * ra - a * a) + rb * rb * acos(b / rb) - b * sqrt(rb * rb - b * b);
+}
+
+/* Two radii and a distance between all inside and just touching, clear of both ends. */
+struct overlapping {
+  double ra, rb, d;
+};
+
+static struct overlapping random_overlap(gsl_rng *random, double clear)
+{
+  const double ra = between(random, 1, 20), rb = between(random, 1, 20);
+  return (struct overlapping){ra, rb, between(random, fabs(ra - rb) + clear, ra + rb - clear)};
+}
+
+Test(lens, area_is_that_of_the_textbook_formula_where_that_is_accurate)
+{
+  const unsigned long seed = 1;
+  gsl_rng *random = random_from(seed);
+  for (int n = 0; n < 10000; n++) {
+    const struct overlapping o = random_overlap(random, 0.1);
+    const double area = lens_of_discs(o.ra, o.rb, o.d).area, naive = naive_lens(o.ra, o.rb, o.d);
+    cr_expect_float_eq(area, naive, 1e-11, "seed %lu, R = %.17g, %.17g, d = %.17g: %.17g, not %.17g", seed, o.ra, o.rb,
+                       o.d, area, naive);
+    cr_expect_float_eq(area, lens_of_discs(o.rb, o.ra, o.d).area, 1e-12 * area, "not symmetric");
+    const double x = between(random, -0.99 * o.ra, 0.99 * o.ra);
+    const double segment = o.ra * o.ra * acos(x / o.ra) - x * sqrt(o.ra * o.ra - x * x);
+    cr_expect_float_eq(lens_of_wall(o.ra, x).area, segment, 1e-11, "seed %lu, wall, R = %.17g, d = %.17g", seed, o.ra,
+                       x);
+  }
+  gsl_rng_free(random);
+}
+
+/* The limit's relative error is of the order of the overlap over the lesser radius; nothing is to be lost beyond. */
+Test(lens, area_tends_to_the_small_overlap_limit_without_cancellation)
+{
+  static const double radii[] = {1, 1.5, 3, 10, 20};
+  for (size_t k = 0; k < sizeof radii / sizeof radii[0]; k++)
+    for (double wanted = 1e-12; wanted < 2e-3; wanted *= 7) {
+      const double r = radii[k], d = 1 + r - wanted, overlap = 1 + r - d; /* as rounded: exact */
+      const double limit = 4. / 3 * sqrt(2 * r / (1 + r)) * pow(overlap, 1.5);
+      const double wall = 4. / 3 * sqrt(2) * pow(1 - (1 - wanted), 1.5);
+      const double tolerance = 0.2 * overlap + 1e-14;
+      cr_expect_float_eq(lens_of_discs(1, r, d).area / limit, 1, tolerance, "R = 1, %g, overlap %g", r, overlap);
+      cr_expect_float_eq(lens_of_wall(1, 1 - wanted).area / wall, 1, tolerance, "wall, overlap %g", wanted);
+    }
+}
+
+Test(lens, chord_is_the_rate_at_which_the_area_grows)
+{
+  const unsigned long seed = 2;
+  const double h = 1e-4;
+  gsl_rng *random = random_from(seed);
+  for (int n = 0; n < 10000; n++) {
+    const struct overlapping o = random_overlap(random, 0.1);
+    const double rate = (lens_of_discs(o.ra, o.rb, o.d - h).area - lens_of_discs(o.ra, o.rb, o.d + h).area) / (2 * h);
+    cr_expect_float_eq(rate / lens_of_discs(o.ra, o.rb, o.d).chord, 1, 1e-6, "seed %lu, R = %.17g, %.17g, d = %.17g",
+                       seed, o.ra, o.rb, o.d);
+    const double x = between(random, 0.1 - o.ra, o.ra - 0.1);
+    const double wall = (lens_of_wall(o.ra, x - h).area - lens_of_wall(o.ra, x + h).area) / (2 * h);
+    cr_expect_float_eq(wall / lens_of_wall(o.ra, x).chord, 1, 1e-6, "seed %lu, wall, R = %.17g, d = %.17g", seed, o.ra,
+                       x);
+  }
+  gsl_rng_free(random);
+}
+
+/* Where the chord is a diameter, its half-length does not tell on which side the centre lies. */
+Test(lens, area_grows_smoothly_where_the_chord_is_a_diameter)
+{
+  const double big = 10, small = 3, d = sqrt(big * big - small * small);
+  for (double h = 1e-3; h > 1e-10; h /= 10) {
+    const double rate = (lens_of_discs(big, small, d - h).area - lens_of_discs(big, small, d + h).area) / (2 * h);
+    const double wall = (lens_of_wall(big, -h).area - lens_of_wall(big, h).area) / (2 * h);
+    const double tolerance = 1e-6 + 1e-13 / h;
+    cr_expect_float_eq(rate / (2 * small), 1, tolerance, "h = %g: %.17g", h, rate);
+    cr_expect_float_eq(wall / (2 * big), 1, tolerance, "wall, h = %g: %.17g", h, wall);
+  }
+}
+
+Test(lens, contained_discs_overlap_wholly_and_distant_ones_not_at_all)
+{
+  static const double contained[] = {0, 1e-300, 1e-9, 1, 6.999, 7};
+  for (size_t k = 0; k < sizeof contained / sizeof contained[0]; k++) {
+    cr_expect_float_eq(lens_of_discs(10, 3, contained[k]).area, M_PI * 9, 1e-13);
+    cr_expect_float_eq(lens_of_discs(3, 10, contained[k]).area, M_PI * 9, 1e-13);
+  }
+  cr_expect_float_eq(lens_of_discs(10, 3, 7 + 1e-9).area, M_PI * 9, 1e-7);
+  cr_expect_float_eq(lens_of_discs(5, 5, 0).area, M_PI * 25, 1e-13);
+  cr_expect_float_eq(lens_of_discs(5, 5, 1e-9).area, M_PI * 25, 1e-7);
+  cr_expect_float_eq(lens_of_wall(5, -5).area, M_PI * 25, 1e-13);
+  cr_expect_float_eq(lens_of_wall(5, -7).area, M_PI * 25, 1e-13);
+  cr_expect_float_eq(lens_of_wall(5, 0).area, M_PI * 12.5, 1e-13);
+  cr_expect_eq(lens_of_discs(10, 3, 13).area, 0);
+  cr_expect_eq(lens_of_discs(10, 3, 14).area, 0);
+  cr_expect_eq(lens_of_wall(5, 5).area, 0);
+  cr_expect_eq(lens_of_wall(5, 6).area, 0);
+}
+
+/* (11), PHYSICS 4: alpha is what the dimensionless area over delta*^1.5 tends to. */
+Test(lens, dimensionless_area_tends_to_the_alpha_of_the_radii)
+{
+  for (double beta = 1; beta < 20; beta *= 1.3) {
+    const double ri = 7, rj = beta * ri, dimensionless = 1e-6, overlap = dimensionless * ri * rj / (ri + rj);
+    const double area = lens_of_discs(ri, rj, ri + rj - overlap).area;
+    const double fit = area * (ri * ri + rj * rj) / (M_PI * ri * ri * rj * rj) / pow(dimensionless, 1.5);
+    const double f = 4 * M_SQRT2 / (3 * M_PI) * (1 + beta * beta) / ((1 + beta) * (1 + beta));
+    cr_expect_float_eq(fit / f, 1, 1e-6, "beta %g: %.9g, not %.9g", beta, fit, f);
+    if (beta == 1) cr_expect_float_eq(fit, 0.3001, 5e-5);
+  }
+}
+
+/* Mean area by cells (23) of two discs of radius 10, over places and directions. */
+static double mean_cells_area(double overlap, unsigned long seed)
+{
+  enum { PLACES = 20000 };
+  struct status status;
+  struct team team = {0};
+  struct scene scene = scene_box(64, 64, 0.05, SIDES_PERIODIC);
+  struct discs discs;
+  struct occupation occupation;
+  struct pair_list pairs;
+  for (int k = 0; k < 2; k++) scene_add_disc(&scene, 10, 2, 0, 0);
+  cr_assert(discs_create(&discs, &scene, &status) && occupation_create(&occupation, &scene, &discs, 0, &status) &&
+            overlap_create(&pairs, 2, &status));
+  gsl_rng *random = random_from(seed);
+  double sum = 0;
+  for (int n = 0; n < PLACES; n++) {
+    const double angle = between(random, 0, 2 * M_PI), d = 20 - overlap;
+    discs.x[0] = between(random, 31, 32), discs.y[0] = between(random, 31, 32);
+    discs.x[1] = discs.x[0] + d * cos(angle), discs.y[1] = discs.y[0] + d * sin(angle);
+    stage_occupation(&occupation, &discs, &team);
+    cr_assert(!team.failed && overlap_join(&pairs, &occupation, &status));
+    sum += pairs.count ? pairs.pairs[0].cells_area : 0;
+  }
+  gsl_rng_free(random);
+  overlap_destroy(&pairs);
+  occupation_destroy(&occupation);
+  discs_destroy(&discs);
+  scene_clear(&scene);
+  return sum / PLACES;
+}
+
+Test(overlap, areas_by_cells_are_on_average_those_measured_for_the_paper_s_rule)
+{
+  static const double measured[][2] = {{0.2, 0.57}, {0.5, 1.82}, {1, 4.75}}; /* PHYSICS 4, R = 10 */
+  for (unsigned long k = 0; k < 3; k++) {
+    const double mean = mean_cells_area(measured[k][0], k);
+    cr_expect_float_eq(mean / measured[k][1], 1, 0.03, "overlap %g, seed %lu: %g", measured[k][0], k, mean);
+  }
+}
+
+Test(law, force_is_never_attractive_and_acts_on_overlap_only)
+{
+  const unsigned long seed = 3;
+  gsl_rng *random = random_from(seed);
+  for (int n = 0; n < 100000; n++) {
+    const double k = pow(10, between(random, -3, 6)), inverse_mass = pow(10, between(random, -6, 2));
+    const struct contact_law law = {.stiffness = 0.3 * k, .k = k, .damping = between(random, 0, 2), .form = n % 2};
+    const double area = pow(10, between(random, -12, 3)), closing = between(random, -0.5, 0.5);
+    const double force = contact_force(&law, area, closing, inverse_mass);
+    cr_expect(force >= 0, "seed %lu: %g", seed, force);
+    cr_expect(closing < 0 || force >= 0.3 * k * area, "seed %lu: damping helps the approach", seed);
+    cr_expect(closing > 0 || force <= 0.3 * k * area, "seed %lu: damping helps the parting", seed);
+    cr_expect_eq(contact_force(&law, 0, closing, inverse_mass), 0);
+  }
+  gsl_rng_free(random);
+}
+
+Test(law, damping_is_critical_at_one_or_as_printed)
+{
+  const double mi = 3, mj = 5, k = 7, reduced = mi * mj / (mi + mj);
+  struct contact_law law = {.k = k, .damping = 0.34, .form = DAMPING_CRITICAL};
+  cr_expect_float_eq(contact_damping(&law, 1 / mi + 1 / mj), 2 * 0.34 * sqrt(k * reduced), 1e-14);
+  cr_expect_float_eq(contact_damping(&law, 1 / mi), 2 * 0.34 * sqrt(k * mi), 1e-14);
+  cr_expect_eq(contact_damping(&law, 0), 0);
+  law.form = DAMPING_PRINTED;
+  cr_expect_float_eq(contact_damping(&law, 1 / mi + 1 / mj), 2 * 0.34 * sqrt(k * (mi + mj) / (mi * mj)), 1e-14);
+}
+
+/* A linear spring: the overlap itself as the area. Unclamped, the force may pull. */
+static double spring_acceleration(const struct contact_law *law, double mass, const double state[2], bool clamped)
+{
+  const double eta = contact_damping(law, 1 / mass);
+  return -(clamped ? contact_force(law, state[0], state[1], 1 / mass) : law->k * state[0] + eta * state[1]) / mass;
+}
+
+/* Restitution of an impact with that spring by fourth-order Runge-Kutta steps, until the overlap ends. */
+static double spring_restitution(const struct contact_law *law, double mass, bool clamped)
+{
+  const double h = 2e-5 / sqrt(law->k / mass);
+  double s[2] = {1e-15, 1}, last = 1;
+  while (s[0] > 0) {
+    static const double weight[4] = {1, 2, 2, 1}, reach[4] = {0, 0.5, 0.5, 1};
+    double rate[2] = {0, 0}, sum[2] = {0, 0};
+    for (int k = 0; k < 4; k++) {
+      const double at[2] = {s[0] + reach[k] * h * rate[0], s[1] + reach[k] * h * rate[1]};
+      rate[0] = at[1];
+      rate[1] = spring_acceleration(law, mass, at, clamped);
+      for (int c = 0; c < 2; c++) sum[c] += weight[k] / 6 * h * rate[c];
+    }
+    last = s[1];
+    s[0] += sum[0];
+    s[1] += sum[1];
+  }
+  return -(clamped ? s[1] : last);
+}
+
+Test(law, a_linear_spring_has_the_restitution_of_the_reference)
+{
+  /* zeta, restitution if the contact ends at no overlap, and at no force: shared/reference/restitution.csv */
+  static const double rows[][3] = {{0.01, 0.969071, 0.969265},
+                                   {0.1, 0.729248, 0.744079},
+                                   {0.34, 0.321163, 0.412731},
+                                   {0.5, 0.163034, 0.298436},
+                                   {0.9, 0.001524, 0.155283}};
+  for (size_t k = 0; k < sizeof rows / sizeof rows[0]; k++) {
+    const struct contact_law law = {.stiffness = 4, .k = 4, .damping = rows[k][0], .form = DAMPING_CRITICAL};
+    cr_expect_float_eq(spring_restitution(&law, 0.6, false), rows[k][1], 4e-5, "zeta %g", rows[k][0]);
+    cr_expect_float_eq(spring_restitution(&law, 0.6, true), rows[k][2], 4e-5, "zeta %g", rows[k][0]);
+  }
+}
+
+/* Two discs head on, or one and a wall, so heavy that the fluid does not matter. The contact starts a whole or a broken
+ * number of steps after the start, by the gap. */
+struct impact {
+  bool wall;
+  double radius[2];
+  double direction[2]; /* from the first disc to the second */
+  double speed, gap;
+  double overlap; /* stiffness: what an undamped impact would reach, in cells */
+  double damping;
+};
+
+struct outcome {
+  double restitution;
+  double most_overlap;
+  double imbalance; /* of the impulses on the two, relative to one of them */
+  double drift;     /* of the momentum of fluid and discs, relative to that of a disc */
+  int substeps;
+};
+
+enum { BOX = 80 };
+static const double heavy = 1e6;
+
+static double reduced_mass(const struct impact *i)
+{
+  const double ma = heavy * M_PI * i->radius[0] * i->radius[0], mb = heavy * M_PI * i->radius[1] * i->radius[1];
+  return i->wall ? ma : ma * mb / (ma + mb);
+}
+
+/* Work against a contact of unit stiffness: the integral of the lens area, by Simpson's rule in the root of the
+ * overlap, in which it is smooth. */
+static double work(const struct impact *i, double overlap)
+{
+  enum { PARTS = 200 };
+  const double top = sqrt(overlap), ra = i->radius[0], rb = i->radius[1];
+  double sum = 0;
+  for (int k = 1; k <= PARTS; k++) {
+    const double root = top * k / PARTS, weight = k == PARTS ? 1 : k % 2 ? 4 : 2;
+    const double at = root * root;
+    sum += weight * 2 * root * (i->wall ? lens_of_wall(ra, ra - at) : lens_of_discs(ra, rb, ra + rb - at)).area;
+  }
+  return sum * top / PARTS / 3;
+}
+
+static struct scene impact_scene(const struct impact *i)
+{
+  struct scene scene = scene_box(BOX, BOX, 0.01, i->wall ? SIDES_CLOSED : SIDES_PERIODIC);
+  scene.coupling.form = FORM_UNIFIED; /* bears deeper overlaps, in which fluid is trapped */
+  scene.contact.damping = i->damping;
+  scene.contact.stiffness = 0.5 * reduced_mass(i) * i->speed * i->speed / work(i, i->overlap) / scene.contact.alpha;
+  const double *n = i->direction, apart = i->radius[0] + i->radius[1] + i->gap;
+  const double along = i->wall ? BOX / 2.0 - apart : -apart / 2; /* from the middle of the box */
+  const double x[2] = {BOX / 2.0 + along * n[0], BOX / 2.0 + along * n[1]};
+  const double part = reduced_mass(i) / (heavy * M_PI * i->radius[0] * i->radius[0]);
+  struct disc_spec *first = scene_add_disc(&scene, i->radius[0], heavy, x[0], x[1]);
+  for (int axis = 0; axis < 2; axis++) first->velocity[axis] = part * i->speed * n[axis];
+  if (i->wall) return scene;
+  struct disc_spec *second = scene_add_disc(&scene, i->radius[1], heavy, x[0] + apart * n[0], x[1] + apart * n[1]);
+  for (int axis = 0; axis < 2; axis++) second->velocity[axis] = (part - 1) * i->speed * n[axis];
+  return scene;
+}
+
+/* Overlap, and the speed of approach. */
+static double overlap_of(const struct impact *i, const struct discs *d, double *closing)
+{
+  const double *n = i->direction;
+  *closing = d->vx[0] * n[0] + d->vy[0] * n[1];
+  if (i->wall) return (d->x[0] - BOX / 2.0) * n[0] + (d->y[0] - BOX / 2.0) * n[1] + i->radius[0] - BOX / 2.0;
+  *closing -= d->vx[1] * n[0] + d->vy[1] * n[1];
+  return i->radius[0] + i->radius[1] - hypot(d->x[1] - d->x[0], d->y[1] - d->y[0]);
+}
+
+static double imbalance_of(const struct discs *d)
+{
+  if (d->count < 2) return 0;
+  const double sum = hypot(d->contact_fx[0] + d->contact_fx[1], d->contact_fy[0] + d->contact_fy[1]);
+  const double one = hypot(d->contact_fx[0], d->contact_fy[0]);
+  return one > 0 ? sum / one : 0;
+}
+
+static struct outcome follow(const struct impact *i)
+{
+  struct status status;
+  struct scene scene = impact_scene(i);
+  struct simulation *simulation;
+  struct simulation_report report;
+  struct outcome outcome = {.restitution = NAN};
+  omp_set_num_threads(1); /* a small box */
+  cr_assert(simulation_create(&simulation, &scene, &status), "%s", status.message);
+  const struct discs *d = simulation_discs(simulation);
+  for (bool met = false; isnan(outcome.restitution) && simulation_step(simulation) < 2000;) {
+    double closing;
+    cr_assert(simulation_advance(simulation, 1, &status), "overlap %g, speed %g: %s", i->overlap, i->speed,
+              status.message);
+    outcome.most_overlap = fmax(outcome.most_overlap, overlap_of(i, d, &closing));
+    outcome.imbalance = fmax(outcome.imbalance, imbalance_of(d));
+    const bool touching = d->contact_fx[0] != 0 || d->contact_fy[0] != 0;
+    if (met && !touching) outcome.restitution = -closing / i->speed;
+    met |= touching;
+  }
+  simulation_report(simulation, &report);
+  outcome.substeps = report.max_substeps;
+  outcome.drift = report.momentum_drift * BOX * BOX / (reduced_mass(i) * i->speed);
+  simulation_destroy(simulation);
+  scene_clear(&scene);
+  return outcome;
+}
+
+static void check_impact(const struct impact *i)
+{
+  const struct outcome o = follow(i);
+  const char *what = i->wall ? "wall" : "discs";
+  /* kinetic energy that a sub-step may add where the contact begins or ends within it: (pi/20)^2/4 */
+  const double surplus = i->damping > 0 ? 0 : 0.0062;
+  cr_expect(o.restitution * o.restitution <= 1 + surplus,
+            "%s, for overlap %g, speed %g, damping %g, gap %g: kinetic energy grows by %.2f %% in %d sub-steps", what,
+            i->overlap, i->speed, i->damping, i->gap, 100 * (o.restitution * o.restitution - 1), o.substeps);
+  if (i->damping == 0)
+    cr_expect_float_eq(o.restitution, 1, 0.01, "%s, for overlap %g, speed %g, gap %g: restitution %g in %d sub-steps",
+                       what, i->overlap, i->speed, i->gap, o.restitution, o.substeps);
+  cr_expect(o.most_overlap <= 1.01 * i->overlap, "%s, for overlap %g, speed %g, damping %g: overlap %g", what,
+            i->overlap, i->speed, i->damping, o.most_overlap);
+  cr_expect(i->wall || (o.imbalance < 1e-14 && o.drift < 1e-12), "momentum: imbalance %g, drift %g", o.imbalance,
+            o.drift);
+}
+
+/* Stiffness over eight decades: the overlap of an undamped impact goes as its power -0.4. Deeper ones than where this
+ * starts drive the trapped fluid to the speed of sound. */
+static void check_impacts(struct impact impact, double speed, double damping)
+{
+  impact.damping = damping;
+  impact.speed = speed;
+  for (double decade = 0; decade <= 8; decade += 0.25)
+    for (int phase = 0; phase < 4; phase++) {
+      impact.overlap = (impact.wall ? 0.25 : 0.8) * pow(10, -0.4 * decade);
+      impact.gap = 1.3 + 0.277 * speed * phase;
+      check_impact(&impact);
+    }
+}
+
+static const struct impact along_x = {.radius = {10, 10}, .direction = {1, 0}};
+static const struct impact oblique = {.radius = {12, 7}, .direction = {0.6, -0.8}};
+static const struct impact on_right_wall = {.wall = true, .radius = {10, 0}, .direction = {1, 0}};
+static const struct impact on_bottom_wall = {.wall = true, .radius = {7, 0}, .direction = {0, -1}};
+
+Test(impact, without_damping_equal_discs_part_as_fast_as_they_met)
+{
+  check_impacts(along_x, 0.02, 0);
+  check_impacts(along_x, 0.2, 0);
+}
+
+Test(impact, without_damping_unequal_discs_part_as_fast_as_they_met)
+{
+  check_impacts(oblique, 0.02, 0);
+  check_impacts(oblique, 0.2, 0);
+}
+
+Test(impact, without_damping_walls_throw_discs_back_as_fast_as_they_came)
+{
+  check_impacts(on_right_wall, 0.02, 0);
+  check_impacts(on_bottom_wall, 0.1, 0);
+}
+
+Test(impact, with_damping_kinetic_energy_never_grows)
+{
+  static const double dampings[] = {0.02, 0.34, 1};
+  for (size_t k = 0; k < sizeof dampings / sizeof dampings[0]; k++) {
+    check_impacts(along_x, 0.02, dampings[k]);
+    check_impacts(oblique, 0.2, dampings[k]);
+    check_impacts(on_bottom_wall, 0.1, dampings[k]);
+  }
+}

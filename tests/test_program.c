@@ -1,0 +1,170 @@
+/* The program from outside: its contracts on command line, exit codes and files. DELBM is the path of the built program. */
+#include <criterion/criterion.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+static char folder[] = "/tmp/delbm-test-XXXXXX";
+
+static void enter_folder(void)
+{
+  cr_assert(mkdtemp(folder) && chdir(folder) == 0);
+}
+
+static void leave_folder(void)
+{
+  char command[64];
+  snprintf(command, sizeof command, "rm -rf %s", folder);
+  cr_assert_eq(chdir("/") + system(command), 0);
+}
+
+TestSuite(program, .init = enter_folder, .fini = leave_folder, .timeout = 60);
+
+/* Runs a shell command in the folder, output into `output` and `errors`; returns its exit code. %s is the program. */
+static int shell(const char *format, ...)
+{
+  char command[1024];
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(command, sizeof command, format, arguments);
+  va_end(arguments);
+  const int result = system(command);
+  return WIFEXITED(result) ? WEXITSTATUS(result) : -1;
+}
+
+static char *read_file(const char *path)
+{
+  FILE *file = fopen(path, "r");
+  cr_assert(file, "%s exists", path);
+  char *text = calloc(1, 1 << 22);
+  const size_t size = fread(text, 1, (1 << 22) - 1, file);
+  cr_assert(size < (1 << 22) - 1 && !ferror(file));
+  fclose(file);
+  return text;
+}
+
+static bool contains(const char *path, const char *text)
+{
+  char *all = read_file(path);
+  const bool found = strstr(all, text) != NULL;
+  free(all);
+  return found;
+}
+
+static void write_file(const char *path, const char *text)
+{
+  FILE *file = fopen(path, "w");
+  cr_assert(file && fputs(text, file) >= 0 && fclose(file) == 0);
+}
+
+/* Discs that fall, meet each other and the walls: enough of everything, in a second. */
+static const char *const crowd = "title: crowd\n"
+                                 "domain: {size: [200, 180]}\n"
+                                 "fluid: {viscosity: 0.03}\n"
+                                 "particles:\n"
+                                 "  density: 1.3\n"
+                                 "  gravity: [1e-5, -4e-4]\n"
+                                 "  fill: {pattern: jittered-grid, spacing: 20, radius: 9.2, jitter: 1, seed: 5}\n"
+                                 "run: {steps: 300}\n"
+                                 "output: {every: 50}\n";
+
+Test(program, particles_csv_has_the_same_bits_for_any_number_of_threads)
+{
+  static const int threads[] = {1, 2, 3, 4, 7};
+  write_file("crowd.yaml", crowd);
+  for (size_t k = 0; k < sizeof threads / sizeof threads[0]; k++)
+    cr_assert_eq(
+        shell("OMP_NUM_THREADS=%d %s run crowd.yaml --quiet --out t%d >/dev/null", threads[k], DELBM, threads[k]), 0);
+  for (size_t k = 1; k < sizeof threads / sizeof threads[0]; k++)
+    cr_expect_eq(shell("cmp t1/particles.csv t%d/particles.csv", threads[k]), 0, "%d threads", threads[k]);
+  cr_expect(contains("t7/run.json", "\"threads\": 7"), "seven threads really ran");
+  cr_expect_eq(shell("awk -F, '$12 != 0 {met = 1} END {exit !met}' t1/particles.csv"), 0, "discs touch");
+}
+
+Test(program, a_run_leaves_the_files_that_scripts_rely_on)
+{
+  write_file("crowd.yaml", crowd);
+  cr_assert_eq(shell("%s run crowd.yaml --set run.steps=40 --set output.frames.every=20 --out o >out 2>err", DELBM), 0);
+  cr_expect(contains("o/particles.csv",
+                     "step,id,x,y,vx,vy,omega,angle,fx,fy,torque,contact_fx,contact_fy,contact_torque\n0,0,"));
+  cr_expect_eq(shell("test -s o/frames/00000000.png -a -s o/frames/00000020.png -a -s o/frames/00000040.png"), 0);
+  static const char *const keys[] = {"status", "steps",      "seconds",        "mlups",    "threads",      "kernel",
+                                     "stages", "mass_drift", "momentum_drift", "max_mach", "peak_rss_mib", "precision"};
+  for (size_t k = 0; k < sizeof keys / sizeof keys[0]; k++) {
+    char quoted[40];
+    snprintf(quoted, sizeof quoted, "\"%s\":", keys[k]);
+    cr_expect(contains("o/run.json", quoted), "%s", keys[k]);
+  }
+  cr_expect_eq(shell("test $(wc -l <out) = 1 && grep -q '^delbm: status=done steps=40 ' out"), 0);
+  /* the case as run is a case again, and the same one */
+  cr_assert_eq(shell("%s run o/case.yaml --quiet --out again >/dev/null", DELBM), 0);
+  cr_expect_eq(shell("cmp o/particles.csv again/particles.csv && cmp o/case.yaml again/case.yaml"), 0);
+  cr_expect_eq(shell("cmp o/frames/00000040.png again/frames/00000040.png"), 0);
+}
+
+Test(program, a_diverging_run_stops_says_so_and_keeps_what_it_wrote)
+{
+  write_file("light.yaml", "domain: {size: [64, 64]}\n"
+                           "fluid: {viscosity: 0.05}\n"
+                           "coupling: {solve: explicit-averaged}\n"
+                           "particles: {density: 0.3, gravity: [0, -1e-3], discs: [{radius: 8, position: [32, 32]}]}\n"
+                           "run: {steps: 5000}\n"
+                           "output: {every: 1}\n");
+  cr_assert_eq(shell("%s run light.yaml --out o >out 2>err", DELBM), 1);
+  cr_expect(contains("out", "status=diverged"));
+  cr_expect(contains("err", "diverged at step"));
+  cr_expect(contains("o/run.json", "\"status\": \"diverged\""));
+  cr_expect_eq(shell("test $(wc -l <o/particles.csv) -gt 3 && ! grep -qiE 'nan|inf' o/particles.csv o/run.json"), 0);
+}
+
+Test(program, exit_codes_tell_what_went_wrong)
+{
+  write_file("good.yaml", "domain: {size: [32, 32]}\nfluid: {viscosity: 0.1}\nrun: {steps: 3}\n");
+  write_file("bad.yaml", "domain: {size: [32, 32]}\nfluid: {viscosty: 0.1}\nrun: {steps: 3}\n");
+  cr_expect_eq(shell("%s run good.yaml --quiet >/dev/null", DELBM), 0);
+  cr_expect_eq(shell("test -f out/good/run.json"), 0, "the default folder is out/NAME");
+  cr_expect_eq(shell("%s run 2>err", DELBM), 2);
+  cr_expect_eq(shell("%s rum good.yaml 2>err", DELBM), 2);
+  cr_expect_eq(shell("%s run good.yaml --quite 2>err", DELBM), 2);
+  cr_expect_eq(shell("%s run bad.yaml 2>err", DELBM), 3);
+  cr_expect(contains("err", "bad.yaml:2:9: unknown key fluid.viscosty; did you mean fluid.viscosity?"));
+  cr_expect_eq(shell("%s info bad.yaml >/dev/null 2>&1", DELBM), 3);
+  cr_expect_eq(shell("%s run absent.yaml 2>err", DELBM), 4);
+  cr_expect_eq(shell("%s run good.yaml --quiet --out good.yaml/x 2>err >/dev/null", DELBM), 4);
+  cr_expect_eq(shell("%s info good.yaml >/dev/full 2>err", DELBM), 4);
+  cr_expect_eq(shell("%s bench nosuch 2>err", DELBM), 2);
+}
+
+Test(program, help_and_version_are_everywhere)
+{
+  cr_expect_eq(shell("%s --version | grep -q '^delbm [0-9]'", DELBM), 0);
+  static const char *const commands[] = {"", "run", "info", "bench"};
+  for (size_t k = 0; k < 4; k++)
+    cr_expect_eq(shell("%s %s --help | grep -q '^usage: delbm'", DELBM, commands[k]), 0, "%s", commands[k]);
+  cr_expect_eq(shell("%s bench --list | grep -q baseline-double", DELBM), 0);
+  cr_expect_eq(shell("%s run --help-keys | grep -q fluid.viscosity", DELBM), 0);
+}
+
+Test(program, info_names_the_stages_that_run_and_those_left_out)
+{
+  write_file("crowd.yaml", crowd);
+  write_file("empty.yaml",
+             "domain: {size: [64, 64], left: periodic, right: periodic}\nfluid: {viscosity: 0.1}\nrun: {steps: 3}\n");
+  cr_assert_eq(shell("%s info crowd.yaml >crowd.txt && %s info empty.yaml >empty.txt", DELBM, DELBM), 0);
+  cr_expect_eq(shell("grep -q 'occupation every step' crowd.txt && grep -q 'pairs and sides' crowd.txt"), 0);
+  cr_expect_eq(shell("grep -q 'occupation left out' empty.txt && grep -q 'exchange   left out' empty.txt"), 0);
+  cr_expect_eq(shell("grep -q 'Reynolds' crowd.txt && grep -q 'Mach' crowd.txt && grep -q 'MiB' crowd.txt"), 0);
+}
+
+Test(program, an_interrupted_run_ends_in_order)
+{
+  write_file("crowd.yaml", crowd);
+  cr_assert_eq(shell("timeout -s INT 1 %s run crowd.yaml --set run.steps=100000000 --quiet --out o >out 2>err; "
+                     "grep -q status=interrupted out",
+                     DELBM),
+               0);
+  cr_expect(contains("o/run.json", "\"status\": \"interrupted\""));
+}
