@@ -50,7 +50,9 @@ double KERNEL(scan_row)(void *const a[Q], int n)
   const REAL *restrict a0 = a[0], *restrict a1 = a[1], *restrict a2 = a[2], *restrict a3 = a[3], *restrict a4 = a[4];
   const REAL *restrict a5 = a[5], *restrict a6 = a[6], *restrict a7 = a[7], *restrict a8 = a[8];
   double largest = 0, sum = 0, least = 1;
+#ifndef __clang__ /* clang 14 forms no maximum of doubles in vectors while NaN must survive, and warns */
 #pragma omp simd reduction(max : largest) reduction(min : least) reduction(+ : sum)
+#endif
   for (int k = 0; k < n; k++) {
     const REAL d5 = a5[k] - a7[k], d6 = a6[k] - a8[k];
     const double jx = (double)(a1[k] - a3[k] + (d5 - d6)), jy = (double)(a2[k] - a4[k] + (d5 + d6));

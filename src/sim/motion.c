@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { NO_TRIAL = UINT32_MAX };
+static const uint32_t no_trial = UINT32_MAX;
 
 bool motion_create(struct motion *m, const struct scene *scene, const struct plan *plan, const struct discs *discs,
                    struct status *status)
@@ -19,7 +19,7 @@ bool motion_create(struct motion *m, const struct scene *scene, const struct pla
     motion_destroy(m);
     return false;
   }
-  for (size_t i = 0; i < discs->count; i++) m->trial_of[i] = NO_TRIAL;
+  for (size_t i = 0; i < discs->count; i++) m->trial_of[i] = no_trial;
   return true;
 }
 
@@ -90,7 +90,7 @@ static bool add_sides(struct motion *m, const struct discs *d, struct status *st
     for (enum side_name side = 0; side < SIDE_COUNT; side++) {
       if (m->scene->domain.side[side].type == SIDE_PERIODIC) continue;
       if (distance_to_side(m->scene, side, d->x[i], d->y[i]) >= d->radius[i] + reach) continue;
-      const struct contact contact = {.a = i, .b = CONTACT_WITH_SIDE, .side = side, .inverse_mass = 1 / d->mass[i]};
+      const struct contact contact = {.a = i, .b = contact_with_side, .side = side, .inverse_mass = 1 / d->mass[i]};
       if (!add_contact(m, &contact, status)) return false;
     }
   }
@@ -99,7 +99,7 @@ static bool add_sides(struct motion *m, const struct discs *d, struct status *st
 
 static bool add_trial(struct motion *m, const struct discs *d, uint32_t i, struct status *status)
 {
-  if (i == CONTACT_WITH_SIDE || m->trial_of[i] != NO_TRIAL) return true;
+  if (i == contact_with_side || m->trial_of[i] != no_trial) return true;
   if (!memory_grow(&m->trials, &m->trial_capacity, m->trial_count + 1, sizeof *m->trials, "the contacts", status))
     return false;
   m->trial_of[i] = (uint32_t)m->trial_count;
@@ -125,7 +125,7 @@ static struct meeting meet_side(const struct scene *scene, const struct contact 
 static struct meeting meet(const struct motion *m, const struct discs *d, const struct contact *c)
 {
   const struct trial *a = &m->trials[m->trial_of[c->a]];
-  if (c->b == CONTACT_WITH_SIDE) return meet_side(m->scene, c, a, d->radius[c->a]);
+  if (c->b == contact_with_side) return meet_side(m->scene, c, a, d->radius[c->a]);
   const struct trial *b = &m->trials[m->trial_of[c->b]];
   const double dx = nearest(m->scene, 0, b->x - a->x), dy = nearest(m->scene, 1, b->y - a->y);
   const double distance = sqrt(dx * dx + dy * dy);
@@ -145,7 +145,7 @@ static double compliance(const struct contact *c, const struct exchange *e, cons
   double sum = 0;
   for (int end = 0; end < 2; end++) {
     const uint32_t i = end ? c->b : c->a;
-    if (i == CONTACT_WITH_SIDE) continue;
+    if (i == contact_with_side) continue;
     const struct response *r = &e->response[i];
     sum += at->nx * at->nx * r->xx + 2 * at->nx * at->ny * r->xy + at->ny * at->ny * r->yy;
   }
@@ -160,7 +160,7 @@ static int count_substeps(const struct motion *m, const struct discs *d, const s
   for (size_t k = 0; k < m->contact_count; k++) {
     const struct contact *c = &m->contacts[k];
     const struct meeting at = meet(m, d, c);
-    const double ra = d->radius[c->a], rb = c->b == CONTACT_WITH_SIDE ? INFINITY : d->radius[c->b];
+    const double ra = d->radius[c->a], rb = c->b == contact_with_side ? INFINITY : d->radius[c->b];
     const double effective = isinf(rb) ? ra : ra * rb / (ra + rb);
     const double advance = fmax(0, at.closing);
     const double chord = fmax(at.lens.chord, sqrt(8 * effective * advance) + at.lens.chord / 2);
@@ -173,7 +173,7 @@ static int count_substeps(const struct motion *m, const struct discs *d, const s
 
 static void push(struct motion *m, uint32_t i, double fx, double fy)
 {
-  if (i == CONTACT_WITH_SIDE) return;
+  if (i == contact_with_side) return;
   struct trial *t = &m->trials[m->trial_of[i]];
   t->fx += fx;
   t->fy += fy;
@@ -210,7 +210,7 @@ static void substep(struct motion *m, const struct exchange *e, struct discs *d,
 static bool follow_contacts(struct motion *m, const struct occupation *o, const struct exchange *e, struct discs *d,
                             struct status *status)
 {
-  for (size_t k = 0; k < m->trial_count; k++) m->trial_of[m->trials[k].disc] = NO_TRIAL;
+  for (size_t k = 0; k < m->trial_count; k++) m->trial_of[m->trials[k].disc] = no_trial;
   m->trial_count = m->contact_count = 0;
   memset(d->contact_fx, 0, d->count * sizeof *d->contact_fx);
   memset(d->contact_fy, 0, d->count * sizeof *d->contact_fy);
@@ -270,7 +270,7 @@ static void finish_disc(const struct motion *m, struct exchange *e, struct discs
   d->omega[i] = new.omega;
   d->angle[i] += new.omega;
   if (d->motion[i] == DISC_FIXED) return;
-  const struct trial *followed = m->substeps > 1 && m->trial_of[i] != NO_TRIAL ? &m->trials[m->trial_of[i]] : NULL;
+  const struct trial *followed = m->substeps > 1 && m->trial_of[i] != no_trial ? &m->trials[m->trial_of[i]] : NULL;
   d->x[i] = into_box(m->scene, 0, followed ? followed->x : d->x[i] + new.vx);
   d->y[i] = into_box(m->scene, 1, followed ? followed->y : d->y[i] + new.vy);
 }

@@ -16,10 +16,10 @@
 #include "coupling/exchange.h"
 #include "sim/plan.h"
 
-enum { CONTACT_WITH_SIDE = UINT32_MAX };
+static const uint32_t contact_with_side = UINT32_MAX;
 
 struct contact {
-  uint32_t a, b; /* discs; b may be CONTACT_WITH_SIDE */
+  uint32_t a, b; /* discs; b may be contact_with_side */
   enum side_name side;
   double inverse_mass; /* 1/m_a + 1/m_b */
   double cells_area;
@@ -40,7 +40,7 @@ struct motion {
   size_t contact_count, contact_capacity;
   struct trial *trials;
   size_t trial_count, trial_capacity;
-  uint32_t *trial_of;  /* of each disc, or NO_TRIAL */
+  uint32_t *trial_of;  /* of each disc, or no_trial */
   int substeps;        /* of this step */
   double last_substep; /* length of the last sub-step; 0 before the first */
   int most_substeps;   /* of any step */
