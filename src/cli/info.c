@@ -4,7 +4,7 @@
 #include "base/threads.h"
 #include "contact/law.h"
 #include "fluid/sweep.h"
-#include "sim/plan.h"
+#include "sim/blocked.h"
 #include "solid/occupation.h"
 
 #include <inttypes.h>
@@ -135,6 +135,19 @@ static void print_contacts(const struct scene *scene, const struct plan *plan)
     printf("sub-steps    1: a contact lasts more than %g steps\n", scene->contact.steps_per_contact);
 }
 
+static void print_plan(const struct scene *scene)
+{
+  if (!blocked_possible(scene))
+    printf("blocking     off: %s\n", scene->particles.count > 0 ? "there are discs"
+                                    : scene->fluid.zero_flux   ? "zero_flux sums over the box each step"
+                                                               : "outlets read beyond their own rows");
+  else if (scene->run.plan.depth == 0)
+    printf("blocking     in time, depth by trial in the first steps (run.json has it); fix it by --plan\n");
+  else
+    printf("blocking     in time, %d steps deep, tiles of %d cells (0: whole rows)\n", scene->run.plan.depth,
+           scene->run.plan.width);
+}
+
 static void print_memory(const struct scene *scene)
 {
   const double cells = (double)scene->domain.size[0] * scene->domain.size[1];
@@ -180,6 +193,7 @@ static int print_case(const struct scene *scene)
   print_contacts(scene, &plan);
   printf("run          %" PRId64 " steps, %d threads, kernel %s\n", scene->run.steps, threads_for(scene_cells(scene)),
          kernel->name);
+  print_plan(scene);
   print_memory(scene);
   print_stages(scene, &plan);
   return DELBM_OK;

@@ -19,6 +19,7 @@ struct run_options {
   const char *path;
   const char *directory; /* NULL: out/NAME */
   struct settings settings;
+  char plan[64]; /* the setting that --plan stands for */
   bool quiet;
 };
 
@@ -49,13 +50,15 @@ static void listen_to_signals(void)
 
 static void print_help(void)
 {
-  puts("usage: delbm run CASE [--out DIR] [--set key=value]... [--quiet]\n"
+  puts("usage: delbm run CASE [--out DIR] [--set key=value]... [--plan DEPTH] [--quiet]\n"
        "\n"
        "Simulates a case: a YAML file, or a folder that holds case.yaml.\n"
        "\n"
        "  --out DIR        folder for the results (out/NAME, NAME being the case's folder or file);\n"
        "                   files of an earlier run in it are replaced\n"
        "  --set key=value  replaces a value of the case: --set domain.size=[512,512] --set output.every=200\n"
+       "  --plan DEPTH     steps in one pass through memory (run.plan.depth); 1 is unblocked, auto the fastest by trial;\n"
+       "                   it changes nothing but the speed\n"
        "  --quiet          no progress on stderr, only errors\n"
        "  --help           this text\n"
        "  --help-keys      every key of a case, what it means and what it may be\n"
@@ -69,10 +72,10 @@ enum { GO_ON = -1 };
 
 static int parse_options(int argc, char **argv, struct run_options *options)
 {
-  enum { OPTION_OUT = OPTION_OWN, OPTION_SET, OPTION_QUIET, OPTION_HELP_KEYS };
+  enum { OPTION_OUT = OPTION_OWN, OPTION_SET, OPTION_PLAN, OPTION_QUIET, OPTION_HELP_KEYS };
   static const struct option known[] = {
       {"out", required_argument, NULL, OPTION_OUT},       {"set", required_argument, NULL, OPTION_SET},
-      {"quiet", no_argument, NULL, OPTION_QUIET},         {"help", no_argument, NULL, OPTION_HELP},
+      {"plan", required_argument, NULL, OPTION_PLAN},     {"quiet", no_argument, NULL, OPTION_QUIET},         {"help", no_argument, NULL, OPTION_HELP},
       {"help-keys", no_argument, NULL, OPTION_HELP_KEYS}, {0}};
   for (int option; (option = option_next(argc, argv, known)) != OPTION_END;) {
     switch (option) {
@@ -81,6 +84,10 @@ static int parse_options(int argc, char **argv, struct run_options *options)
       break;
     case OPTION_SET:
       if (!settings_add(&options->settings, optarg, argc, argv)) return DELBM_USAGE;
+      break;
+    case OPTION_PLAN:
+      snprintf(options->plan, sizeof options->plan, "run.plan.depth=%s", optarg);
+      if (!settings_add(&options->settings, options->plan, argc, argv)) return DELBM_USAGE;
       break;
     case OPTION_QUIET:
       options->quiet = true;

@@ -49,24 +49,26 @@ static void outlet_link(struct populations *p, bool periodic_x, int i, int gx, i
   populations_set(p, to, populations_get(p, from) - boundary_outlet_hold * d2q9_weight[i] * excess);
 }
 
-/* The links of row y to the left (inward +1) or right (inward -1) side: of an outlet those from the ghost beside the row, of
+/* The links of row y to the left (inward +1) or right (inward -1) side, with the positions of x = 0 in plane 0 of the rows
+ * below, at and above y: of an outlet those from the ghost beside the row, of
  * other sides those to the cell at its end. */
-static void side_links(struct populations *p, const struct side side[SIDE_COUNT], int y, int inward, bool before)
+static void side_links(struct populations *p, const struct side side[SIDE_COUNT], int y, const size_t row[3],
+                       int inward, bool before)
 {
   static const int inward_east[3] = {1, 5, 8}, inward_west[3] = {3, 6, 7};
   const struct side *own = &side[inward > 0 ? SIDE_LEFT : SIDE_RIGHT];
   const int x = inward > 0 ? 0 : p->nx - 1, far = p->nx - 1 - x;
   for (int k = 0; k < 3; k++) {
     const int i = inward > 0 ? inward_east[k] : inward_west[k], o = d2q9_opposite[i];
-    const int from_y = y - d2q9_ey[i];
     if (own->type == SIDE_OUTLET) {
       if (inside_y(p, y + d2q9_ey[i])) outlet_link(p, false, i, x - inward, y, before);
       continue;
     }
-    if (ruled_by_end(p, side, own, from_y)) continue;
+    if (ruled_by_end(p, side, own, y - d2q9_ey[i])) continue;
     const bool periodic = own->type == SIDE_PERIODIC;
-    const size_t ghost = populations_slot(p, o, x - inward, from_y);
-    const size_t inside = periodic ? populations_slot(p, o, far, from_y) : populations_slot(p, i, x, y);
+    const size_t from = row[1 - d2q9_ey[i]] + (size_t)o * p->plane;
+    const size_t ghost = from + (size_t)(ptrdiff_t)(x - inward);
+    const size_t inside = periodic ? from + (size_t)far : row[1] + (size_t)i * p->plane + (size_t)x;
     const double add = periodic ? 0 : d2q9_wall_momentum(i, own->velocity);
     move(p, before ? ghost : inside, before ? inside : ghost, 1, add);
   }
@@ -96,8 +98,10 @@ static void end_links(struct populations *p, const struct side side[SIDE_COUNT],
 
 static void links(struct populations *p, const struct side side[SIDE_COUNT], int y, int x0, int x1, bool before)
 {
-  if (x0 == 0) side_links(p, side, y, +1, before);
-  if (x1 == p->nx) side_links(p, side, y, -1, before);
+  const size_t row[3] = {populations_slot(p, 0, 0, y - 1), populations_slot(p, 0, 0, y),
+                         populations_slot(p, 0, 0, y + 1)};
+  if (x0 == 0) side_links(p, side, y, row, +1, before);
+  if (x1 == p->nx) side_links(p, side, y, row, -1, before);
   if (p->periodic_y) return;
   if (y == 0) end_links(p, side, y, x0, x1, +1, before);
   if (y == p->ny - 1) end_links(p, side, y, x0, x1, -1, before);

@@ -24,12 +24,6 @@ static void check_cells(struct draft *draft)
                  cells * cell_bytes / gib);
 }
 
-static void check_precision(struct draft *draft)
-{
-  if (draft_knows(draft, "fluid.precision") && draft->scene.fluid.precision == PRECISION_SINGLE)
-    draft_refuse(draft, "fluid.precision", "double: single precision is not built yet");
-}
-
 /* Paths of the keys of a side, and which way is into the box. */
 struct side_keys {
   const char *name;
@@ -307,7 +301,6 @@ bool scene_check(struct draft *draft, struct status *status)
   check_cells(draft);
   check_sides(draft);
   check_rates(draft);
-  check_precision(draft);
   check_zero_flux(draft);
   check_fill(draft);
   check_density(draft);

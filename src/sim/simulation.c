@@ -6,6 +6,7 @@
 #include "sim/diagnostics.h"
 #include "sim/flow.h"
 #include "sim/motion.h"
+#include "sim/tuning.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -19,6 +20,7 @@ struct simulation {
   struct exchange exchange;
   struct motion motion;
   struct team team;
+  struct tuning tuning;
   struct stage_times times;
   int64_t step;
   int threads; /* of the parallel region */
@@ -127,9 +129,33 @@ static void step(struct simulation *s, double *since)
   charge(s, STAGE_SWEEP, since);
 }
 
+/* Steps of a scene that is blocked in time: blocks of equal length, none deeper than the tuning says. */
+static void run_blocks(struct simulation *s, int64_t steps)
+{
+  const int64_t end = s->step + steps;
+  while (s->step < end) {
+    const struct blocking blocking = tuning_next(&s->tuning, end - s->step);
+    const int64_t blocks = (end - s->step + blocking.depth - 1) / blocking.depth;
+    const int length = s->tuning.settled ? (int)((end - s->step + blocks - 1) / blocks) : blocking.depth;
+    const int64_t left = end - s->step;
+    const int block = length < left ? length : (int)left;
+    const double begun = clock_now();
+#pragma omp parallel num_threads(s->threads)
+    stage_sweep_blocked(&s->flow, &blocking, block);
+    const double seconds = clock_now() - begun;
+    s->times.seconds[STAGE_SWEEP] += seconds;
+    s->step += block;
+    if (block == blocking.depth) tuning_note(&s->tuning, &blocking, seconds / block);
+  }
+}
+
 /* Steps up to the next look for divergence, in one parallel region. */
 static void run_steps(struct simulation *s, int64_t steps)
 {
+  if (!s->tuning.settled || s->tuning.best.depth > 1) {
+    run_blocks(s, steps);
+    return;
+  }
 #pragma omp parallel num_threads(s->threads)
   {
     double since = clock_now();
@@ -165,7 +191,10 @@ bool simulation_check(struct simulation *s, struct status *status)
 
 bool simulation_advance(struct simulation *s, int64_t steps, struct status *status)
 {
-  s->threads = threads_for(scene_cells(s->scene));
+  if (s->threads != threads_for(scene_cells(s->scene))) {
+    s->threads = threads_for(scene_cells(s->scene));
+    tuning_start(&s->tuning, s->scene, s->threads);
+  }
   if (!flow_prepare(&s->flow, s->threads, status)) return false;
   const int64_t end = s->step + steps, look = s->scene->run.check;
   while (s->step < end) {
@@ -234,4 +263,5 @@ void simulation_report(struct simulation *s, struct simulation_report *report)
       .momentum_drift = momentum_drift(s),
       .max_mach = s->max_mach,
       .max_substeps = s->plan.exchange ? s->motion.most_substeps : 1};
+  tuning_text(&s->tuning, report->plan);
 }

@@ -40,6 +40,7 @@ struct simulation_report {
   double momentum_drift; /* largest of the two components of the change of the conserved momentum not explained by body
                                forces, over the fluid's mass; NAN where walls, inlets or outlets exchange momentum */
   double max_mach;       /* largest seen at the looks for divergence */
+  char plan[32];         /* blocking of the sweep in time: off, its depth, or depth x width */
   int max_substeps;      /* most sub-steps that a step has taken */
 };
 void simulation_report(struct simulation *simulation, struct simulation_report *report);

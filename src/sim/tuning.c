@@ -1,0 +1,64 @@
+#include "sim/tuning.h"
+
+#include <math.h>
+#include <stdio.h>
+
+/* In the order of trial. Two rounds: the first block of a depth may find its memory cold. */
+static const struct blocking candidates[] = {{1, 0}, {4, 0}, {8, 0}, {16, 0}, {32, 0}, {16, 1024}, {16, 512}};
+enum { CANDIDATES = sizeof candidates / sizeof candidates[0], ROUNDS = 2 };
+
+static bool is_possible(const struct tuning *t, const struct blocking *blocking)
+{
+  return blocking->depth <= t->deepest && blocking->width < t->widest;
+}
+
+/* The next trial that this box allows. */
+static void skip_impossible(struct tuning *t)
+{
+  while (t->trial < CANDIDATES * ROUNDS && !is_possible(t, &candidates[t->trial % CANDIDATES])) t->trial++;
+  t->settled = t->trial >= CANDIDATES * ROUNDS;
+}
+
+void tuning_start(struct tuning *t, const struct scene *scene, int threads)
+{
+  *t = (struct tuning){.best = {.depth = 1}, .settled = true, .best_time = INFINITY};
+  if (!blocked_possible(scene)) return;
+  t->widest = scene->domain.size[0];
+  t->deepest = blocked_deepest(scene->domain.size[1], threads);
+  if (scene->run.plan.depth == 0) {
+    skip_impossible(t);
+    return;
+  }
+  t->best = (struct blocking){.depth = scene->run.plan.depth, .width = scene->run.plan.width};
+  if (t->best.depth > t->deepest) t->best.depth = t->deepest > 1 ? t->deepest : 1;
+}
+
+struct blocking tuning_next(const struct tuning *t, int64_t steps)
+{
+  if (t->settled) return t->best;
+  const struct blocking candidate = candidates[t->trial % CANDIDATES];
+  return candidate.depth <= steps ? candidate : t->best;
+}
+
+void tuning_note(struct tuning *t, const struct blocking *blocking, double seconds_per_step)
+{
+  if (t->settled) return;
+  const struct blocking candidate = candidates[t->trial % CANDIDATES];
+  if (blocking->depth != candidate.depth || blocking->width != candidate.width) return;
+  if (seconds_per_step < t->best_time) {
+    t->best_time = seconds_per_step;
+    t->best = candidate;
+  }
+  t->trial++;
+  skip_impossible(t);
+}
+
+void tuning_text(const struct tuning *t, char text[TUNING_TEXT])
+{
+  if (t->best.depth <= 1)
+    snprintf(text, TUNING_TEXT, "off");
+  else if (t->best.width == 0)
+    snprintf(text, TUNING_TEXT, "%d", t->best.depth);
+  else
+    snprintf(text, TUNING_TEXT, "%dx%d", t->best.depth, t->best.width);
+}
