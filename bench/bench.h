@@ -22,7 +22,10 @@ struct bench {
   bench_run *run;
 };
 
-bench_run bench_sweep, bench_drag;
+bench_run bench_sweep, bench_drag, bench_step;
+
+/* Prints what is measured on, and puts it into the report as its first member. */
+void bench_describe_machine(const struct bench_report *report);
 
 /* All benchmarks; NULL past the last. */
 const struct bench *bench_at(size_t index);

@@ -46,3 +46,20 @@ struct scene scene_square_array(double radius, double solid_fraction, double vis
   scene_add_disc(&scene, size * sqrt(solid_fraction / M_PI), 1, size / 2.0, size / 2.0)->motion = DISC_FIXED;
   return scene;
 }
+
+struct scene scene_crowd(int nx, int ny, double radius, double spacing, double jitter)
+{
+  struct scene scene = scene_box(nx, ny, 0.05, SIDES_CLOSED);
+  struct status status;
+  scene.particles.gravity[1] = -0.024525;
+  scene.fluid.zero_flux = true;
+  scene.particles.fill = (struct fill_spec){.present = true,
+                                            .spacing = spacing,
+                                            .radius = radius,
+                                            .density = 1.01,
+                                            .jitter = jitter,
+                                            .region = {0, 0, nx, ny},
+                                            .seed = 1};
+  if (!scene_fill(&scene, &status)) abort();
+  return scene;
+}

@@ -171,7 +171,7 @@ static double mean_cells_area(double overlap, unsigned long seed)
     discs.x[0] = between(random, 31, 32), discs.y[0] = between(random, 31, 32);
     discs.x[1] = discs.x[0] + d * cos(angle), discs.y[1] = discs.y[0] + d * sin(angle);
     stage_occupation(&occupation, &discs, &team);
-    cr_assert(!team.failed && overlap_join(&pairs, &occupation, &status));
+    cr_assert(!team.failed && overlap_join(&pairs, occupation.batches, (size_t)occupation.band_count, 2, &status));
     sum += pairs.count ? pairs.pairs[0].cells_area : 0;
   }
   gsl_rng_free(random);

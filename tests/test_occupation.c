@@ -357,9 +357,9 @@ static const char *compare(const struct occupation *a, const struct occupation *
     for (size_t r = 0; r < s->run_count; r++)
       if (!same_run(&s->runs[r], &t->runs[r])) return "runs";
     if (s->shared_cells != t->shared_cells) return "count of shared cells";
-    if (s->pair_count != t->pair_count) return "count of pairs";
-    for (size_t n = 0; n < s->pair_count; n++) {
-      const struct near_pair *l = &s->pairs[n], *r = &t->pairs[n];
+    if (a->batches[k].count != b->batches[k].count) return "count of pairs";
+    for (size_t n = 0; n < a->batches[k].count; n++) {
+      const struct near_pair *l = &a->batches[k].pairs[n], *r = &b->batches[k].pairs[n];
       if (l->a != r->a || l->b != r->b || memcmp(&l->cells_area, &r->cells_area, sizeof(double))) return "pairs";
     }
   }
@@ -483,7 +483,7 @@ static void crowd_create(struct crowd *c, enum sides sides, int reach, unsigned 
     spread(&c->p, c->p.occupation.share, i, c->share[i]);
   }
   cr_assert(overlap_create(&c->pairs, CROWD, &status));
-  cr_assert(overlap_join(&c->pairs, &c->p.occupation, &status));
+  cr_assert(overlap_join(&c->pairs, c->p.occupation.batches, (size_t)c->p.occupation.band_count, CROWD, &status));
   gsl_rng_free(random);
 }
 
@@ -605,7 +605,7 @@ static int check_reach(const struct painting *p, struct pair_list *pairs, unsign
 {
   struct status status;
   int apart = 0;
-  cr_assert(overlap_join(pairs, &p->occupation, &status));
+  cr_assert(overlap_join(pairs, p->occupation.batches, (size_t)p->occupation.band_count, p->occupation.discs, &status));
   for (uint32_t a = 0; a < p->discs.count; a++)
     for (uint32_t b = a + 1; b < p->discs.count; b++) {
       const double gap = gap_between(p, a, b);

@@ -139,8 +139,8 @@ static void print_plan(const struct scene *scene)
 {
   if (!blocked_possible(scene))
     printf("blocking     off: %s\n", scene->particles.count > 0 ? "there are discs"
-                                    : scene->fluid.zero_flux   ? "zero_flux sums over the box each step"
-                                                               : "outlets read beyond their own rows");
+                                     : scene->fluid.zero_flux   ? "zero_flux sums over the box each step"
+                                                                : "outlets read beyond their own rows");
   else if (scene->run.plan.depth == 0)
     printf("blocking     in time, depth by trial in the first steps (run.json has it); fix it by --plan\n");
   else

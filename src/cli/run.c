@@ -57,7 +57,8 @@ static void print_help(void)
        "  --out DIR        folder for the results (out/NAME, NAME being the case's folder or file);\n"
        "                   files of an earlier run in it are replaced\n"
        "  --set key=value  replaces a value of the case: --set domain.size=[512,512] --set output.every=200\n"
-       "  --plan DEPTH     steps in one pass through memory (run.plan.depth); 1 is unblocked, auto the fastest by trial;\n"
+       "  --plan DEPTH     steps in one pass through memory (run.plan.depth); 1 is unblocked, auto the fastest by "
+       "trial;\n"
        "                   it changes nothing but the speed\n"
        "  --quiet          no progress on stderr, only errors\n"
        "  --help           this text\n"
@@ -73,10 +74,13 @@ enum { GO_ON = -1 };
 static int parse_options(int argc, char **argv, struct run_options *options)
 {
   enum { OPTION_OUT = OPTION_OWN, OPTION_SET, OPTION_PLAN, OPTION_QUIET, OPTION_HELP_KEYS };
-  static const struct option known[] = {
-      {"out", required_argument, NULL, OPTION_OUT},       {"set", required_argument, NULL, OPTION_SET},
-      {"plan", required_argument, NULL, OPTION_PLAN},     {"quiet", no_argument, NULL, OPTION_QUIET},         {"help", no_argument, NULL, OPTION_HELP},
-      {"help-keys", no_argument, NULL, OPTION_HELP_KEYS}, {0}};
+  static const struct option known[] = {{"out", required_argument, NULL, OPTION_OUT},
+                                        {"set", required_argument, NULL, OPTION_SET},
+                                        {"plan", required_argument, NULL, OPTION_PLAN},
+                                        {"quiet", no_argument, NULL, OPTION_QUIET},
+                                        {"help", no_argument, NULL, OPTION_HELP},
+                                        {"help-keys", no_argument, NULL, OPTION_HELP_KEYS},
+                                        {0}};
   for (int option; (option = option_next(argc, argv, known)) != OPTION_END;) {
     switch (option) {
     case OPTION_OUT:

@@ -21,16 +21,15 @@ void overlap_destroy(struct pair_list *list)
 }
 
 /* Stable counting sort by the lower index: what a disc a met, in the order of bands and rows. */
-static void gather_by_first(struct pair_list *list, const struct occupation *o)
+static void gather_by_first(struct pair_list *list, const struct pair_batch *batches, size_t count, size_t discs)
 {
-  const size_t discs = o->discs;
   memset(list->next, 0, (discs + 1) * sizeof *list->next);
-  for (int k = 0; k < o->band_count; k++)
-    for (size_t p = 0; p < o->bands[k].pair_count; p++) list->next[o->bands[k].pairs[p].a + 1]++;
+  for (size_t k = 0; k < count; k++)
+    for (size_t p = 0; p < batches[k].count; p++) list->next[batches[k].pairs[p].a + 1]++;
   for (size_t d = 1; d <= discs; d++) list->next[d] += list->next[d - 1];
-  for (int k = 0; k < o->band_count; k++)
-    for (size_t p = 0; p < o->bands[k].pair_count; p++) {
-      const struct near_pair *pair = &o->bands[k].pairs[p];
+  for (size_t k = 0; k < count; k++)
+    for (size_t p = 0; p < batches[k].count; p++) {
+      const struct near_pair *pair = &batches[k].pairs[p];
       list->scratch[list->next[pair->a]++] = *pair;
     }
 }
@@ -49,16 +48,17 @@ static void merge(struct pair_list *list, size_t start, const struct near_pair *
   list->count++;
 }
 
-bool overlap_join(struct pair_list *list, const struct occupation *o, struct status *status)
+bool overlap_join(struct pair_list *list, const struct pair_batch *batches, size_t count, size_t discs,
+                  struct status *status)
 {
   size_t meetings = 0;
-  for (int k = 0; k < o->band_count; k++) meetings += o->bands[k].pair_count;
+  for (size_t k = 0; k < count; k++) meetings += batches[k].count;
   list->count = 0;
   if (meetings == 0) return true;
   if (!memory_grow(&list->scratch, &list->scratch_capacity, meetings, sizeof *list->scratch, "the pairs", status) ||
       !memory_grow(&list->pairs, &list->capacity, meetings, sizeof *list->pairs, "the pairs", status))
     return false;
-  gather_by_first(list, o);
+  gather_by_first(list, batches, count, discs);
   size_t start = 0;
   for (size_t p = 0; p < meetings; p++) {
     if (p == 0 || list->scratch[p].a != list->scratch[p - 1].a) start = list->count;

@@ -9,13 +9,14 @@
 /* Row buffers of one thread. */
 struct cover {
   struct row_cover row;
-  enum precision precision;
+  const struct sweep_kernel *kernel;
+  size_t value_size;
 };
 
-bool cover_create(struct cover *cover, int nx, enum precision precision, struct status *status);
+bool cover_create(struct cover *cover, int nx, const struct sweep_kernel *kernel, struct status *status);
 void cover_destroy(struct cover *cover);
 
-/* Adds the given runs; cover_clear with the same runs makes the buffers zero again. */
+/* Adds the given runs, at least one; cover_clear with the same runs makes the buffers zero again. */
 void cover_paint(struct cover *cover, const struct run *runs, size_t count, const double *share,
                  const struct surface_velocity *surface);
 void cover_clear(struct cover *cover, const struct run *runs, size_t count);

@@ -56,24 +56,22 @@ void exchange_destroy(struct exchange *e)
   *e = (struct exchange){0};
 }
 
-static struct moment_sums gather(gather_run *gather_cells, const struct populations *p,
-                                 const struct sweep_constants *constants, const struct occupation *o, size_t disc)
+/* What the sweep left for a disc, row by row, and leaves again at zero; with the force of the coming step, and b = 2 share. */
+static struct gathered take_sums(const struct occupation *o, const struct sweep_constants *c, size_t disc)
 {
   struct moment_sums sums = {0};
+  struct moment_sums *rows = o->sums + o->first_span[disc];
   for (int k = 0; k < o->rows[disc]; k++) {
-    struct run runs[2];
-    int y = 0;
-    const int count = occupation_runs(o, disc, k, runs, &y);
-    for (int r = 0; r < count; r++) {
-      void *a[Q];
-      populations_cells(p, runs[r].x, y, a);
-      gather_cells(a, runs[r].n, constants, o->share + runs[r].cell, runs[r].rx, runs[r].ry, &sums);
-    }
+    moment_sums_add(&sums, &rows[k]);
+    rows[k] = (struct moment_sums){0};
   }
-  return sums;
+  const double gx = c->force[0], gy = c->force[1], zx = c->uniform[0], zy = c->uniform[1];
+  const double px = sums.jx + gx * sums.mass + zx * sums.share, py = sums.jy + gy * sums.mass + zy * sums.share;
+  const double l = sums.torque + (gy * sums.mx - gx * sums.my) + (zy * sums.sx - zx * sums.sy);
+  return (struct gathered){2 * px, 2 * py, 2 * l, 2 * sums.mass, 2 * sums.mx, 2 * sums.my, 2 * sums.mm};
 }
 
-void exchange_force(const struct moment_sums *g, double vx, double vy, double omega, double force[3])
+void exchange_force(const struct gathered *g, double vx, double vy, double omega, double force[3])
 {
   force[0] = g->px - (g->m0 * vx - g->m1y * omega);
   force[1] = g->py - (g->m0 * vy + g->m1x * omega);
@@ -89,7 +87,7 @@ static void respond(struct response *a, const double r[3])
 }
 
 /* A^-1 by elimination of omega: A = [[t, 0, -y], [0, t, x], [-y, x, w]]. False unless A is positive definite. */
-static bool invert(const struct moment_sums *g, double mass, double inertia, struct response *inverse)
+static bool invert(const struct gathered *g, double mass, double inertia, struct response *inverse)
 {
   const double t = mass + g->m0, w = inertia + g->m2, x = g->m1x, y = g->m1y;
   const double schur = w - (x * x + y * y) / t;
@@ -138,13 +136,12 @@ static void solve_explicit(struct exchange *e, const struct discs *d, size_t i, 
   respond(&e->response[i], r);
 }
 
-void stage_exchange(struct exchange *e, const struct sweep_kernel *kernel, const struct populations *p,
-                    const struct sweep_constants *constants, const struct occupation *o, const struct discs *d,
-                    int64_t step, struct team *team)
+void stage_exchange(struct exchange *e, const struct sweep_constants *constants, const struct occupation *o,
+                    const struct discs *d, int64_t step, struct team *team)
 {
-#pragma omp for schedule(dynamic, 8)
+#pragma omp for schedule(static)
   for (size_t i = 0; i < d->count; i++) {
-    e->gathered[i] = gather(kernel->gather, p, constants, o, i);
+    e->gathered[i] = take_sums(o, constants, i);
     e->response[i] = (struct response){0};
     if (d->motion[i] != DISC_FREE) continue;
     const double buoyant = d->mass[i] - d->fluid_mass[i];

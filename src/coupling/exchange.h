@@ -21,13 +21,20 @@
  * explicit-averaged, for comparison: A = diag(m, m, I), R = weight + mean of the exchange at V over this step and the last; the
  * sweep sees V.
  *
- * Discs are gathered in parallel, each by one thread, its rows from the lowest, its cells from the left: no races, one order. */
+ * The sums are taken inside the sweep of the step before, row by row and one row behind it, while the row is in cache
+ * (sim/flow.c): they cost no pass through memory. They are kept per row of each disc and added from the lowest row up, so that
+ * neither the threads nor their shares of rows change a bit. */
 #ifndef DELBM_COUPLING_EXCHANGE_H
 #define DELBM_COUPLING_EXCHANGE_H
 
 #include "base/team.h"
 #include "fluid/sweep.h"
 #include "solid/occupation.h"
+
+/* The sums above over all cells of a disc. */
+struct gathered {
+  double px, py, l, m0, m1x, m1y, m2;
+};
 
 /* A^-1, symmetric, and the change of velocity without contacts. */
 struct response {
@@ -43,7 +50,7 @@ struct surface_velocity {
 struct exchange {
   enum coupling_solve solve;
   double gravity[2];
-  struct moment_sums *gathered;
+  struct gathered *gathered;
   struct response *response;
   struct surface_velocity *surface;
   double *last;   /* explicit-averaged: [3 disc + component] exchange of the step before */
@@ -55,11 +62,10 @@ bool exchange_create(struct exchange *exchange, const struct scene *scene, const
                      struct status *status);
 void exchange_destroy(struct exchange *exchange);
 
-/* Gathers and solves for all discs; called by all threads of a parallel region or outside of one. With parity 1 the ghosts of
- * all rows must have been filled. Fails when A cannot be inverted: a disc too light and too small for its cells. */
-void stage_exchange(struct exchange *exchange, const struct sweep_kernel *kernel, const struct populations *populations,
-                    const struct sweep_constants *constants, const struct occupation *occupation,
-                    const struct discs *discs, int64_t step, struct team *team);
+/* Adds up and solves for all discs; called by all threads of a parallel region or outside of one. `constants` are those of the
+ * coming sweep. Fails when A cannot be inverted: a disc too light and too small for its cells. */
+void stage_exchange(struct exchange *exchange, const struct sweep_constants *constants,
+                    const struct occupation *occupation, const struct discs *discs, int64_t step, struct team *team);
 
 /* What a light disc is held by in a step: c, that of rotation, and the time T. All zero for any other disc. */
 struct held {
@@ -68,6 +74,6 @@ struct held {
 struct held exchange_held(const struct exchange *exchange, const struct discs *discs, size_t disc);
 
 /* The exchange (force, torque) on the disc if it moves with the given velocity: (P, L) - M V. */
-void exchange_force(const struct moment_sums *g, double vx, double vy, double omega, double force[3]);
+void exchange_force(const struct gathered *g, double vx, double vy, double omega, double force[3]);
 
 #endif

@@ -1,10 +1,10 @@
-/* Kernels that read moments and write nothing, compiled per precision and instruction set as the sweep is. Moments are formed in
- * the precision of the populations, sums in double.
+/* Kernels that read moments and write no populations, compiled per precision and instruction set as the sweep is.
  *
- * gather_run  sums over a run of cells for the exchange (PHYSICS 2.1). With b = 2 share, r the lever arm, j the momentum about
- *             to be collided and F = rho g + uniform the force of the step: sum b (j + F), b (r x (j + F)), b rho, b rho r
- *             and b rho |r|^2.
+ * gather_run  moment_sums over a run of cells. Moments are formed in the precision of the populations, sums in double. A run is
+ *             taken eight cells at a time; beyond its end cells are read too, with a share of zero.
+ * paint_run   adds a run to the row's cover (sweep.h), likewise.
  * scan_row    the largest speed of a row. What is not finite may escape a maximum, but not the sum formed beside it. */
+#include "base/lanes.h"
 #include "fluid/sweep.h"
 
 #define PASTE3(a, b, c) a##_##b##_##c
@@ -12,37 +12,72 @@
 #define KERNEL(part)    NAME3(part, VARIANT, REAL)
 
 extern gather_run KERNEL(gather_run);
+extern paint_run KERNEL(paint_run);
 extern scan_row KERNEL(scan_row);
 
-void KERNEL(gather_run)(void *const a[Q], int n, const struct sweep_constants *constants, const double *restrict share,
-                        double rx0, double ry, struct moment_sums *sums)
+typedef REAL real_lanes __attribute__((vector_size(LANES * sizeof(REAL)), aligned(sizeof(REAL)), may_alias));
+
+static inline real_lanes load(const REAL *from)
 {
-  const double gx = constants->force[0], gy = constants->force[1], zx = constants->uniform[0],
-               zy = constants->uniform[1];
-  const REAL *restrict a0 = a[0], *restrict a1 = a[1], *restrict a2 = a[2], *restrict a3 = a[3], *restrict a4 = a[4];
-  const REAL *restrict a5 = a[5], *restrict a6 = a[6], *restrict a7 = a[7], *restrict a8 = a[8];
-  double px = 0, py = 0, torque = 0, m0 = 0, m1 = 0, m2 = 0;
-#pragma omp simd reduction(+ : px, py, torque, m0, m1, m2)
-  for (int k = 0; k < n; k++) {
-    const REAL d5 = a5[k] - a7[k], d6 = a6[k] - a8[k];
-    const double rho = 1 + (double)(a0[k] + (a1[k] + a3[k] + a2[k] + a4[k]) + (a5[k] + a7[k] + a6[k] + a8[k]));
-    const double jx = (double)(a1[k] - a3[k] + (d5 - d6)) + (rho * gx + zx);
-    const double jy = (double)(a2[k] - a4[k] + (d5 + d6)) + (rho * gy + zy);
-    const double b = 2 * share[k], rx = rx0 + k, mass = b * rho;
-    px += b * jx;
-    py += b * jy;
-    torque += b * (rx * jy - ry * jx);
-    m0 += mass;
-    m1 += mass * rx;
-    m2 += mass * (rx * rx + ry * ry);
+  return *(const real_lanes *)from;
+}
+
+static inline lanes widen(real_lanes value)
+{
+  return __builtin_convertvector(value, lanes);
+}
+
+void KERNEL(gather_run)(void *const a[Q], int n, const double *share, double rx, double ry, struct moment_sums *sums)
+{
+  const REAL *a0 = a[0], *a1 = a[1], *a2 = a[2], *a3 = a[3], *a4 = a[4], *a5 = a[5], *a6 = a[6], *a7 = a[7], *a8 = a[8];
+  const lanes zero = {0};
+  lanes jx_sum = zero, jy_sum = zero, turn = zero, mass_sum = zero, mx = zero, mxx = zero, share_sum = zero, sx = zero;
+  for (int k = 0; k < n; k += LANES) {
+    const real_lanes f1 = load(a1 + k), f2 = load(a2 + k), f3 = load(a3 + k), f4 = load(a4 + k);
+    const real_lanes f5 = load(a5 + k), f6 = load(a6 + k), f7 = load(a7 + k), f8 = load(a8 + k);
+    const real_lanes d5 = f5 - f7, d6 = f6 - f8;
+    const lanes jx = widen(f1 - f3 + (d5 - d6)), jy = widen(f2 - f4 + (d5 + d6));
+    const lanes rho = 1 + widen(load(a0 + k) + (f1 + f3 + f2 + f4) + (f5 + f7 + f6 + f8));
+    const lanes s = lanes_first(lanes_load(share + k), n - k), r = (rx + k) + lanes_count;
+    const lanes mass = s * rho, sr = s * r;
+    jx_sum += s * jx;
+    jy_sum += s * jy;
+    turn += sr * jy;
+    mass_sum += mass;
+    mx += mass * r;
+    mxx += mass * r * r;
+    share_sum += s;
+    sx += sr;
   }
-  sums->px += px;
-  sums->py += py;
-  sums->l += torque;
-  sums->m0 += m0;
-  sums->m1x += m1;
-  sums->m1y += ry * m0;
-  sums->m2 += m2;
+  const struct moment_sums run = {.jx = lanes_sum(jx_sum),
+                                  .jy = lanes_sum(jy_sum),
+                                  .torque = lanes_sum(turn) - ry * lanes_sum(jx_sum),
+                                  .mass = lanes_sum(mass_sum),
+                                  .mx = lanes_sum(mx),
+                                  .my = ry * lanes_sum(mass_sum),
+                                  .mm = lanes_sum(mxx) + ry * ry * lanes_sum(mass_sum),
+                                  .share = lanes_sum(share_sum),
+                                  .sx = lanes_sum(sx),
+                                  .sy = ry * lanes_sum(share_sum)};
+  moment_sums_add(sums, &run);
+}
+
+/* Adds to eight elements of a row buffer. */
+static inline void add(REAL *to, lanes value)
+{
+  *(real_lanes *)to = *(real_lanes *)to + __builtin_convertvector(value, real_lanes);
+}
+
+void KERNEL(paint_run)(const struct row_cover *row, int x, int n, const double *share, double vx, double vy,
+                       double omega)
+{
+  REAL *b = (REAL *)row->b + x, *bvx = (REAL *)row->bvx + x, *bvy = (REAL *)row->bvy + x;
+  for (int k = 0; k < n; k += LANES) {
+    const lanes s = lanes_first(lanes_load(share + k), n - k);
+    add(b + k, s);
+    add(bvx + k, s * vx);
+    add(bvy + k, s * (vy + omega * (k + lanes_count)));
+  }
 }
 
 double KERNEL(scan_row)(void *const a[Q], int n)

@@ -6,6 +6,7 @@
 #define DELBM_FLUID_SWEEP_H
 
 #include "fluid/populations.h"
+#include "lattice/moment_sums.h"
 
 /* What is the same for every cell of a step. */
 struct sweep_constants {
@@ -25,15 +26,17 @@ struct row_cover {
 typedef void sweep_row(void *const a[Q], int n, const struct sweep_constants *constants, const struct row_cover *cover,
                        double sum[2]);
 
-/* Sums over the cells of a disc (PHYSICS 2.1): with b = 2 share, r the lever arm and j after the force of the step, sum b j,
- * b (r x j), b rho, b rho r and b rho |r|^2. */
-struct moment_sums {
-  double px, py, l, m0, m1x, m1y, m2;
-};
+/* The same for fluid alone without force, from one set of addresses to another. */
+typedef void sweep_row_between(void *const from[Q], void *const to[Q], int n, const struct sweep_constants *constants);
 
-/* Adds n cells, read from a[i][0..n-1], the first of them at (rx, ry) from the disc's centre. */
-typedef void gather_run(void *const a[Q], int n, const struct sweep_constants *constants, const double *share,
-                        double rx, double ry, struct moment_sums *sums);
+/* Adds n cells, read from a[i][0..n-1], the first of them at (rx, ry) from the disc's centre, to its sums. Up to seven elements
+ * past the end of the populations and of share[] are read. */
+typedef void gather_run(void *const a[Q], int n, const double *share, double rx, double ry, struct moment_sums *sums);
+
+/* Adds n cells from x on to a row's cover: the solid moves at (vx, vy) in the first, at vy + k omega in the k-th after it. Up to
+ * seven elements past the end are read and written back as they were. */
+typedef void paint_run(const struct row_cover *row, int x, int n, const double *share, double vx, double vy,
+                       double omega);
 
 /* Largest |j/rho|^2 of n cells; NAN if one is not finite or has no positive density. */
 typedef double scan_row(void *const a[Q], int n);
@@ -43,7 +46,9 @@ struct sweep_kernel {
   enum precision precision;
   sweep_row *fluid[2];    /* [with a force?] */
   sweep_row *discs[2][2]; /* [enum coupling_form][with a force?] */
+  sweep_row_between *two_arrays;
   gather_run *gather;
+  paint_run *paint;
   scan_row *scan;
 };
 

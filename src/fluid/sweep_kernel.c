@@ -25,13 +25,15 @@
 #define NAME3(a, b, c)  PASTE3(a, b, c)
 #define KERNEL(part)    NAME3(part, VARIANT, REAL)
 
-static inline __attribute__((always_inline)) void collide_stream(void *const a[Q], const int n,
+static inline __attribute__((always_inline)) void collide_stream(void *const a[Q], void *const to[Q], const int n,
                                                                  const struct sweep_constants *constants,
                                                                  const struct row_cover *cover, double sum[2],
                                                                  const bool discs, const bool owen, const bool force)
 {
-  REAL *restrict a0 = a[0], *restrict a1 = a[1], *restrict a2 = a[2], *restrict a3 = a[3], *restrict a4 = a[4];
-  REAL *restrict a5 = a[5], *restrict a6 = a[6], *restrict a7 = a[7], *restrict a8 = a[8];
+  const REAL *a0 = a[0], *a1 = a[1], *a2 = a[2], *a3 = a[3], *a4 = a[4];
+  const REAL *a5 = a[5], *a6 = a[6], *a7 = a[7], *a8 = a[8];
+  REAL *to0 = to[0], *to1 = to[1], *to2 = to[2], *to3 = to[3], *to4 = to[4];
+  REAL *to5 = to[5], *to6 = to[6], *to7 = to[7], *to8 = to[8];
   const REAL *restrict cover_b = discs ? cover->b : NULL;
   const REAL *restrict cover_bvx = discs ? cover->bvx : NULL;
   const REAL *restrict cover_bvy = discs ? cover->bvy : NULL;
@@ -95,16 +97,15 @@ static inline __attribute__((always_inline)) void collide_stream(void *const a[Q
     const REAL odd_x = half * (delta_jx - delta_tx), odd_y = half * (delta_jy - delta_ty);
     const REAL odd_up = quarter * (delta_tx + delta_ty), odd_down = quarter * (delta_ty - delta_tx);
 
-    /* f_i* goes to the slot that f_opposite(i) was read from. */
-    a0[x] = f0 - delta_S - delta_D;
-    a3[x] = f1 + axis_x + odd_x;
-    a1[x] = f3 + axis_x - odd_x;
-    a4[x] = f2 + axis_y + odd_y;
-    a2[x] = f4 + axis_y - odd_y;
-    a7[x] = f5 + diagonal_up + odd_up;
-    a5[x] = f7 + diagonal_up - odd_up;
-    a8[x] = f6 + diagonal_down + odd_down;
-    a6[x] = f8 + diagonal_down - odd_down;
+    to0[x] = f0 - delta_S - delta_D;
+    to1[x] = f1 + axis_x + odd_x;
+    to3[x] = f3 + axis_x - odd_x;
+    to2[x] = f2 + axis_y + odd_y;
+    to4[x] = f4 + axis_y - odd_y;
+    to5[x] = f5 + diagonal_up + odd_up;
+    to7[x] = f7 + diagonal_up - odd_up;
+    to6[x] = f6 + diagonal_down + odd_down;
+    to8[x] = f8 + diagonal_down - odd_down;
   }
   if (force) {
     sum[0] = (double)sum_x;
@@ -112,11 +113,13 @@ static inline __attribute__((always_inline)) void collide_stream(void *const a[Q
   }
 }
 
+/* In place f_i* goes to the slot that f_opposite(i) was read from. */
 #define ROW(name, discs, owen, force)                                                                                  \
   static void name(void *const a[Q], int n, const struct sweep_constants *constants, const struct row_cover *cover,    \
                    double sum[2])                                                                                      \
   {                                                                                                                    \
-    collide_stream(a, n, constants, cover, sum, discs, owen, force);                                                   \
+    void *const to[Q] = {a[0], a[3], a[4], a[1], a[2], a[7], a[8], a[5], a[6]};                                        \
+    collide_stream(a, to, n, constants, cover, sum, discs, owen, force);                                               \
   }
 ROW(sweep_fluid, false, false, false)
 ROW(sweep_fluid_force, false, false, true)
@@ -125,7 +128,14 @@ ROW(sweep_discs_unified_force, true, false, true)
 ROW(sweep_discs_owen, true, true, false)
 ROW(sweep_discs_owen_force, true, true, true)
 
+/* The classic kernel, from one array to another: what the in-place one is measured against. */
+static void sweep_two_arrays(void *const from[Q], void *const to[Q], int n, const struct sweep_constants *constants)
+{
+  collide_stream(from, to, n, constants, NULL, NULL, false, false, false);
+}
+
 extern gather_run KERNEL(gather_run);
+extern paint_run KERNEL(paint_run);
 extern scan_row KERNEL(scan_row);
 extern const struct sweep_kernel KERNEL(sweep_kernel);
 const struct sweep_kernel KERNEL(sweep_kernel) = {
@@ -134,5 +144,7 @@ const struct sweep_kernel KERNEL(sweep_kernel) = {
     .fluid = {sweep_fluid, sweep_fluid_force},
     .discs = {[FORM_UNIFIED] = {sweep_discs_unified, sweep_discs_unified_force},
               [FORM_OWEN] = {sweep_discs_owen, sweep_discs_owen_force}},
+    .two_arrays = sweep_two_arrays,
     .gather = KERNEL(gather_run),
+    .paint = KERNEL(paint_run),
     .scan = KERNEL(scan_row)};

@@ -95,6 +95,7 @@ struct scene {
   struct {
     enum contact_area area;
     enum contact_search search;
+    double edge; /* of the linked cells; 0: one diameter */
     double stiffness;
     double alpha;
     double damping;

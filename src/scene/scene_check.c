@@ -135,6 +135,15 @@ static void check_rates(struct draft *draft)
   if (rate >= 2) draft_refuse(draft, magic, "a value large enough for the rate q to be below 2");
 }
 
+/* Linked cells find pairs, not the cells that these share. */
+static void check_search(struct draft *draft)
+{
+  const struct scene *scene = &draft->scene;
+  if (scene->contact.search == SEARCH_LINKED_CELL && scene->contact.area == AREA_CELLS)
+    draft_refuse(draft, "contact.search",
+                 "grid: the area by cells is summed over the cells that the grid search finds");
+}
+
 static void check_zero_flux(struct draft *draft)
 {
   if (!draft_gives(draft, "fluid.zero_flux") || !draft_knows(draft, "fluid.zero_flux") || !sides_known(draft)) return;
@@ -302,6 +311,7 @@ bool scene_check(struct draft *draft, struct status *status)
   check_sides(draft);
   check_rates(draft);
   check_zero_flux(draft);
+  check_search(draft);
   check_fill(draft);
   check_density(draft);
   return check_discs(draft, status);

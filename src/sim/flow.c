@@ -37,7 +37,7 @@ bool flow_prepare(struct flow *f, int threads, struct status *status)
   size_t capacity = (size_t)f->threads;
   if (!memory_grow(&f->covers, &capacity, (size_t)threads, sizeof *f->covers, "the rows' covers", status)) return false;
   for (; f->threads < threads; f->threads++)
-    if (!cover_create(&f->covers[f->threads], f->populations.nx, f->kernel->precision, status)) return false;
+    if (!cover_create(&f->covers[f->threads], f->populations.nx, f->kernel, status)) return false;
   return true;
 }
 
@@ -77,8 +77,9 @@ void stage_boundary(struct flow *f)
   for (int y = 0; y < f->populations.ny; y++) boundary_before_row(&f->populations, f->scene->domain.side, y);
 }
 
-static void sweep_row_at(struct flow *f, int y, const struct occupation *o, const struct exchange *e)
+static void sweep_row_at(struct flow *f, int y, const struct sweep_discs *discs)
 {
+  const struct occupation *o = discs->now;
   double unused[2], *momentum = f->force ? f->row_momentum[y] : unused;
   const int nx = f->populations.nx;
   size_t count = 0;
@@ -90,7 +91,7 @@ static void sweep_row_at(struct flow *f, int y, const struct occupation *o, cons
     return;
   }
   struct cover *cover = &f->covers[omp_get_thread_num()];
-  cover_paint(cover, runs, count, o->share, e->surface);
+  cover_paint(cover, runs, count, o->share, discs->exchange->surface);
   f->kernel->discs[f->scene->coupling.form][f->force](a, nx, &f->constants, &cover->row, momentum);
   cover_clear(cover, runs, count);
 }
@@ -108,16 +109,46 @@ static void cancel_flux(struct flow *f)
     f->constants.uniform[axis] = scene_is_closed(f->scene, axis) ? -sum[axis] / cells : 0;
 }
 
-void stage_sweep(struct flow *f, bool ghosts_filled, const struct occupation *o, const struct exchange *e)
+/* Takes the moments of row y, about to be collided in the state `p`, for the discs that cover it. */
+static void gather_row(const struct flow *f, struct populations *p, struct occupation *o, int y)
+{
+  size_t count;
+  const struct run *runs = occupation_row(o, y, &count);
+  if (p->parity) boundary_before_row(p, f->scene->domain.side, y);
+  for (size_t r = 0; r < count; r++) {
+    const struct run *run = &runs[r];
+    void *a[Q];
+    if (run->n == 0) continue;
+    populations_cells(p, run->x, y, a);
+    f->kernel->gather(a, run->n, o->share + run->cell, run->rx, run->ry, &o->sums[run->span]);
+  }
+}
+
+void stage_first_sums(struct flow *f, struct occupation *o)
+{
+#pragma omp for schedule(static)
+  for (int y = 0; y < f->populations.ny; y++) gather_row(f, &f->populations, o, y);
+}
+
+void stage_sweep(struct flow *f, bool ghosts_filled, const struct sweep_discs *discs)
 {
   struct populations *p = &f->populations;
+  struct populations after = *p; /* the same populations, as the next step will read them */
   const struct side *side = f->scene->domain.side;
-#pragma omp for schedule(static)
-  for (int y = 0; y < p->ny; y++) {
+  const int64_t thread = omp_get_thread_num(), threads = omp_get_num_threads();
+  const int first = (int)(p->ny * thread / threads), end = (int)(p->ny * (thread + 1) / threads);
+  after.parity ^= 1;
+  for (int y = first; y < end; y++) {
     if (p->parity && !ghosts_filled) boundary_before_row(p, side, y);
-    sweep_row_at(f, y, o, e);
+    sweep_row_at(f, y, discs);
     if (p->parity) boundary_after_row(p, side, y);
+    if (discs->next && y > first + 1) gather_row(f, &after, discs->next, y - 1);
   }
+#pragma omp barrier
+  /* the ends of a thread's rows wait for their neighbours, which are another thread's */
+  if (discs->next && first < end) gather_row(f, &after, discs->next, first);
+  if (discs->next && first < end - 1) gather_row(f, &after, discs->next, end - 1);
+#pragma omp barrier
 #pragma omp single
   {
     if (f->scene->fluid.zero_flux) cancel_flux(f);

@@ -27,12 +27,23 @@ void flow_start(struct flow *flow, const struct occupation *occupation, const st
 /* Prepares for a parallel region of `threads`. */
 bool flow_prepare(struct flow *flow, int threads, struct status *status);
 
-/* Called by all threads of a parallel region or outside of one. stage_boundary fills the ghosts of all rows; it is needed with
- * parity 1 where the exchange reads them before the sweep, or where boundary_fill_first says so. */
+/* Where discs are in a sweep, and where they will be after it; all NULL in a scene without discs. */
+struct sweep_discs {
+  const struct occupation *now;
+  const struct exchange *exchange; /* with the velocities of the discs' surfaces */
+  struct occupation *next;         /* takes the sums of the next exchange; may be the same as `now` */
+};
+
+/* All are called by all threads of a parallel region or outside of one.
+ *
+ * stage_boundary fills the ghosts of all rows before a sweep of parity 1, where boundary_fill_first says so. */
 void stage_boundary(struct flow *flow);
 
-/* `occupation` and `exchange` are NULL in a scene without discs. Ends with the next step's parity and uniform force. */
-void stage_sweep(struct flow *flow, bool ghosts_filled, const struct occupation *occupation,
-                 const struct exchange *exchange);
+/* The sweep. With discs each row's moments are taken for the next exchange once the row and its neighbours are done, which also
+ * fills the row's ghosts if the next step needs them. Ends with the next step's parity and uniform force. */
+void stage_sweep(struct flow *flow, bool ghosts_filled, const struct sweep_discs *discs);
+
+/* The sums of the first exchange, which no sweep precedes. */
+void stage_first_sums(struct flow *flow, struct occupation *occupation);
 
 #endif

@@ -15,7 +15,9 @@ bool motion_create(struct motion *m, const struct scene *scene, const struct pla
 {
   *m = (struct motion){.scene = scene, .plan = *plan, .law = contact_law_of(scene), .most_substeps = 1};
   m->trial_of = memory_allocate(discs->count, sizeof *m->trial_of, "the contacts", status);
-  if (!m->trial_of || (plan->pairs && !overlap_create(&m->pairs, discs->count, status))) {
+  const bool linked = plan->pairs && scene->contact.search == SEARCH_LINKED_CELL;
+  if (!m->trial_of || (plan->pairs && !overlap_create(&m->pairs, discs->count, status)) ||
+      (linked && !linked_cell_create(&m->linked, scene, discs, scene->contact.edge, plan->reach, status))) {
     motion_destroy(m);
     return false;
   }
@@ -26,6 +28,7 @@ bool motion_create(struct motion *m, const struct scene *scene, const struct pla
 void motion_destroy(struct motion *m)
 {
   overlap_destroy(&m->pairs);
+  linked_cell_destroy(&m->linked);
   free(m->contacts);
   free(m->trials);
   free(m->trial_of);
@@ -214,7 +217,10 @@ static bool follow_contacts(struct motion *m, const struct occupation *o, const 
   m->trial_count = m->contact_count = 0;
   memset(d->contact_fx, 0, d->count * sizeof *d->contact_fx);
   memset(d->contact_fy, 0, d->count * sizeof *d->contact_fy);
-  if (m->plan.pairs && !(overlap_join(&m->pairs, o, status) && add_pairs(m, d, status))) return false;
+  const bool linked = m->scene->contact.search == SEARCH_LINKED_CELL;
+  if (m->plan.pairs && !linked && !overlap_join(&m->pairs, o->batches, (size_t)o->band_count, d->count, status))
+    return false;
+  if (m->plan.pairs && !add_pairs(m, d, status)) return false;
   if (m->plan.walls && !add_sides(m, d, status)) return false;
   for (size_t k = 0; k < m->contact_count; k++)
     if (!add_trial(m, d, m->contacts[k].a, status) || !add_trial(m, d, m->contacts[k].b, status)) return false;
@@ -284,6 +290,10 @@ void stage_contact(struct motion *m, const struct occupation *o, struct exchange
                    struct team *team)
 {
   struct status status;
+  if (m->plan.pairs && m->scene->contact.search == SEARCH_LINKED_CELL) {
+    linked_cell_find(&m->linked, d, &m->pairs, team);
+    if (team->stop) return;
+  }
 #pragma omp single
   {
     m->substeps = 1;

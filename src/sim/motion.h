@@ -12,7 +12,7 @@
 #define DELBM_SIM_MOTION_H
 
 #include "contact/law.h"
-#include "contact/overlap.h"
+#include "contact/linked_cell.h"
 #include "coupling/exchange.h"
 #include "sim/plan.h"
 
@@ -36,6 +36,7 @@ struct motion {
   struct plan plan;
   struct contact_law law;
   struct pair_list pairs;
+  struct linked_cell linked; /* with search: linked-cell */
   struct contact *contacts;
   size_t contact_count, contact_capacity;
   struct trial *trials;

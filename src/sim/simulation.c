@@ -16,7 +16,8 @@ struct simulation {
   struct plan plan;
   struct flow flow;
   struct discs discs;
-  struct occupation occupation;
+  struct occupation occupations[2]; /* at the start of the present step, and of the next; one where no disc moves */
+  int present;
   struct exchange exchange;
   struct motion motion;
   struct team team;
@@ -45,11 +46,18 @@ static void conserved_momentum(struct simulation *s, double momentum[2])
   }
 }
 
+static struct occupation *present(struct simulation *s)
+{
+  return &s->occupations[s->present];
+}
+
 static bool create_discs(struct simulation *s, struct status *status)
 {
   if (!s->plan.exchange) return true;
+  const bool moving = s->plan.occupation == OCCUPATION_EVERY_STEP;
   return discs_create(&s->discs, s->scene, status) &&
-         occupation_create(&s->occupation, s->scene, &s->discs, s->plan.reach, status) &&
+         occupation_create(&s->occupations[0], s->scene, &s->discs, s->plan.reach, status) &&
+         (!moving || occupation_create(&s->occupations[1], s->scene, &s->discs, s->plan.reach, status)) &&
          exchange_create(&s->exchange, s->scene, &s->discs, status) &&
          motion_create(&s->motion, s->scene, &s->plan, &s->discs, status);
 }
@@ -66,14 +74,15 @@ bool simulation_create(struct simulation **simulation, const struct scene *scene
     *simulation = NULL;
     return false;
   }
-  if (s->plan.exchange) stage_occupation(&s->occupation, &s->discs, &s->team);
+  if (s->plan.exchange) stage_occupation(present(s), &s->discs, &s->team);
   if (s->team.failed) {
     *status = s->team.first;
     simulation_destroy(s);
     *simulation = NULL;
     return false;
   }
-  flow_start(&s->flow, s->plan.exchange ? &s->occupation : NULL, &s->discs);
+  flow_start(&s->flow, s->plan.exchange ? present(s) : NULL, &s->discs);
+  if (s->plan.exchange) stage_first_sums(&s->flow, present(s));
   conserved_momentum(s, s->initial_momentum);
   return true;
 }
@@ -83,7 +92,7 @@ void simulation_destroy(struct simulation *s)
   if (!s) return;
   motion_destroy(&s->motion);
   exchange_destroy(&s->exchange);
-  occupation_destroy(&s->occupation);
+  for (int k = 0; k < 2; k++) occupation_destroy(&s->occupations[k]);
   discs_destroy(&s->discs);
   flow_destroy(&s->flow);
   free(s);
@@ -101,31 +110,31 @@ static void charge(struct simulation *s, enum stage stage, double *since)
 }
 
 /* One step, by all threads of the parallel region. The exchange precedes the contacts so that these, and their sub-steps, act
- * through the same response as the fluid does. */
+ * through the same response as the fluid does; and discs are painted where they have just moved before the sweep, so that the
+ * sweep can take the sums of the next exchange. */
 static void step(struct simulation *s, double *since)
 {
-  const struct plan *plan = &s->plan;
-  const struct occupation *occupation = plan->exchange ? &s->occupation : NULL;
-  const bool fill_ghosts = s->flow.populations.parity && (plan->exchange || boundary_fill_first(s->scene->domain.side));
-  if (plan->occupation == OCCUPATION_EVERY_STEP) {
-    stage_occupation(&s->occupation, &s->discs, &s->team);
+  struct sweep_discs discs = {0};
+  if (s->plan.exchange) {
+    const bool moving = s->plan.occupation == OCCUPATION_EVERY_STEP;
+    struct occupation *now = present(s), *next = moving ? &s->occupations[!s->present] : now;
+    stage_exchange(&s->exchange, &s->flow.constants, now, &s->discs, s->step, &s->team);
+    charge(s, STAGE_EXCHANGE, since);
+    if (s->team.stop) return;
+    stage_contact(&s->motion, now, &s->exchange, &s->discs, s->step, &s->team);
+    charge(s, STAGE_CONTACT, since);
+    if (s->team.stop) return;
+    if (moving) stage_occupation(next, &s->discs, &s->team);
     charge(s, STAGE_OCCUPATION, since);
     if (s->team.stop) return;
+    discs = (struct sweep_discs){.now = now, .exchange = &s->exchange, .next = next};
   }
-  if (fill_ghosts) {
+  const bool fill_first = s->flow.populations.parity && !s->plan.exchange && boundary_fill_first(s->scene->domain.side);
+  if (fill_first) {
     stage_boundary(&s->flow);
     charge(s, STAGE_BOUNDARY, since);
   }
-  if (plan->exchange) {
-    stage_exchange(&s->exchange, s->flow.kernel, &s->flow.populations, &s->flow.constants, &s->occupation, &s->discs,
-                   s->step, &s->team);
-    charge(s, STAGE_EXCHANGE, since);
-    if (s->team.stop) return;
-    stage_contact(&s->motion, &s->occupation, &s->exchange, &s->discs, s->step, &s->team);
-    charge(s, STAGE_CONTACT, since);
-    if (s->team.stop) return;
-  }
-  stage_sweep(&s->flow, fill_ghosts, occupation, &s->exchange);
+  stage_sweep(&s->flow, fill_first || s->plan.exchange, &discs);
   charge(s, STAGE_SWEEP, since);
 }
 
@@ -162,7 +171,10 @@ static void run_steps(struct simulation *s, int64_t steps)
     for (int64_t k = 0; k < steps && !s->team.stop; k++) {
       step(s, &since);
 #pragma omp single
-      s->step += !s->team.stop;
+      if (!s->team.stop) {
+        s->step++;
+        if (s->plan.occupation == OCCUPATION_EVERY_STEP) s->present ^= 1;
+      }
     }
   }
 }
@@ -225,7 +237,7 @@ const struct discs *simulation_discs(const struct simulation *s)
 
 const struct occupation *simulation_occupation(const struct simulation *s)
 {
-  return s->plan.exchange ? &s->occupation : NULL;
+  return s->plan.exchange ? &s->occupations[s->present] : NULL;
 }
 
 void simulation_fields(struct simulation *s, double *density, double *ux, double *uy)

@@ -25,7 +25,7 @@ int64_t simulation_step(const struct simulation *simulation);
 const struct scene *simulation_scene(const struct simulation *simulation);
 const struct discs *simulation_discs(const struct simulation *simulation);
 
-/* Who covers what, as of the last step's start; NULL in a scene without discs. */
+/* Who covers what now; NULL in a scene without discs. */
 const struct occupation *simulation_occupation(const struct simulation *simulation);
 
 /* Density and velocity of every cell, row by row from the bottom: arrays of size[0] * size[1]. Any may be NULL. */

@@ -10,11 +10,11 @@ enum { TUNING_TEXT = 32 };
 
 struct tuning {
   struct blocking best;
-  bool settled;      /* no more trials */
-  int trial;         /* number of the next one */
-  int widest;        /* no tile need be as wide */
-  int deepest;       /* that the box and the threads allow */
-  double best_time;  /* seconds a step */
+  bool settled;     /* no more trials */
+  int trial;        /* number of the next one */
+  int widest;       /* no tile need be as wide */
+  int deepest;      /* that the box and the threads allow */
+  double best_time; /* seconds a step */
 };
 
 /* Starts with trials, or settled as run.plan says or as a scene that cannot be blocked needs. */

@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { SLACK = 8 }; /* elements past the last share that a kernel may read */
+
 /* Rows and columns that a disc can touch. */
 static size_t most_lines(double radius)
 {
@@ -43,11 +45,13 @@ static bool allocate(struct occupation *o, size_t spans, size_t cells, struct st
          (o->first_span = memory_allocate(n, sizeof *o->first_span, what, status)) &&
          (o->first_cell = memory_allocate(n, sizeof *o->first_cell, what, status)) &&
          (o->spans = memory_allocate(spans, sizeof *o->spans, what, status)) &&
+         (o->sums = memory_allocate(spans, sizeof *o->sums, what, status)) &&
          (o->eps = memory_allocate(cells, sizeof *o->eps, what, status)) &&
-         (o->share = memory_allocate(cells, sizeof *o->share, what, status)) &&
+         (o->share = memory_allocate(cells + SLACK, sizeof *o->share, what, status)) &&
          (o->order = memory_allocate(n, sizeof *o->order, what, status)) &&
          (o->band_start = memory_allocate((size_t)o->band_count + 1, sizeof *o->band_start, what, status)) &&
-         (o->bands = memory_allocate((size_t)o->band_count, sizeof *o->bands, what, status));
+         (o->bands = memory_allocate((size_t)o->band_count, sizeof *o->bands, what, status)) &&
+         (o->batches = memory_allocate((size_t)o->band_count, sizeof *o->batches, what, status));
 }
 
 bool occupation_create(struct occupation *o, const struct scene *scene, const struct discs *discs, int reach,
@@ -58,6 +62,7 @@ bool occupation_create(struct occupation *o, const struct scene *scene, const st
                            .three_nu = 3 * scene->fluid.viscosity,
                            .reach = reach,
                            .minimum = 0.95,
+                           .find_pairs = scene->contact.search == SEARCH_GRID,
                            .discs = discs->count,
                            .band_count = (scene->domain.size[1] + BAND_ROWS - 1) / BAND_ROWS};
   size_t spans = 0, cells = 0;
@@ -84,11 +89,12 @@ void occupation_destroy(struct occupation *o)
 {
   for (int k = 0; o->bands && k < o->band_count; k++) {
     free(o->bands[k].runs);
-    free(o->bands[k].pairs);
+    if (o->batches) free(o->batches[k].pairs);
     free(o->bands[k].shared);
   }
-  void *const arrays[] = {o->x,     o->y,   o->column, o->row,   o->rows,       o->first_span, o->first_cell,
-                          o->spans, o->eps, o->share,  o->order, o->band_start, o->band_discs, o->bands};
+  void *const arrays[] = {o->x,          o->y,          o->column, o->row,    o->rows,  o->first_span,
+                          o->first_cell, o->spans,      o->sums,   o->eps,    o->share, o->order,
+                          o->band_start, o->band_discs, o->bands,  o->batches};
   for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; k++) free(arrays[k]);
   *o = (struct occupation){0};
 }
@@ -313,7 +319,8 @@ int occupation_runs(const struct occupation *o, size_t disc, int k, struct run r
   const struct run whole = {.disc = (uint32_t)disc,
                             .rx = first + 0.5 - o->x[disc],
                             .ry = o->row[disc] + k + 0.5 - o->y[disc],
-                            .cell = span->cell};
+                            .cell = span->cell,
+                            .span = own ? o->first_span[disc] + (size_t)k : o->first_span[disc]};
   int count = 0;
   const int shifts[3] = {0, o->size[0], -o->size[0]};
   for (int s = 0; s < (o->periodic[0] ? 3 : 1) && count < 2; s++) {
@@ -427,6 +434,7 @@ static bool meet(struct occupation *o, struct band *band, const struct run *row,
                  size_t second, struct status *status)
 {
   const struct run *l = &row[first], *r = &row[second];
+  struct pair_batch *batch = &o->batches[band - o->bands];
   double area = 0;
   const int low = l->x > r->x ? l->x : r->x;
   const int high = l->x + l->n < r->x + r->n ? l->x + l->n : r->x + r->n;
@@ -436,11 +444,10 @@ static bool meet(struct occupation *o, struct band *band, const struct run *row,
     if (!shared_earlier(row, first, second, x) && !share_cell(o, band, row + first, count - first, x, status))
       return false;
   }
-  if (l->disc == r->disc) return true;
-  if (!memory_grow(&band->pairs, &band->pair_capacity, band->pair_count + 1, sizeof *band->pairs, "a band's pairs",
-                   status))
+  if (l->disc == r->disc || !o->find_pairs) return true;
+  if (!memory_grow(&batch->pairs, &batch->capacity, batch->count + 1, sizeof *batch->pairs, "a band's pairs", status))
     return false;
-  band->pairs[band->pair_count++] = (struct near_pair){
+  batch->pairs[batch->count++] = (struct near_pair){
       .a = l->disc < r->disc ? l->disc : r->disc, .b = l->disc < r->disc ? r->disc : l->disc, .cells_area = area};
   return true;
 }
@@ -448,7 +455,7 @@ static bool meet(struct occupation *o, struct band *band, const struct run *row,
 static bool find_shared(struct occupation *o, int index, struct status *status)
 {
   struct band *band = &o->bands[index];
-  band->pair_count = band->shared_cells = 0;
+  o->batches[index].count = band->shared_cells = 0;
   for (int k = 0; k < BAND_ROWS; k++) {
     const struct run *row = band->runs + band->row_start[k];
     const size_t count = band->row_start[k + 1] - band->row_start[k];

@@ -17,6 +17,7 @@
 #define DELBM_SOLID_OCCUPATION_H
 
 #include "base/team.h"
+#include "lattice/moment_sums.h"
 #include "solid/discs.h"
 
 enum { BAND_ROWS = 16 };
@@ -29,6 +30,7 @@ struct run {
   uint32_t disc;
   double rx, ry; /* from the disc's centre to the centre of the first cell */
   size_t cell;   /* of the first cell, in eps[] and share[] */
+  size_t span;   /* of the disc's row, in spans[] and sums[] */
 };
 
 /* Two discs, lower index first, that come within reach in a row, and what (23) adds to their overlap area there. */
@@ -37,13 +39,17 @@ struct near_pair {
   double cells_area;
 };
 
+/* Pairs found together, in the order found. */
+struct pair_batch {
+  struct near_pair *pairs;
+  size_t count, capacity;
+};
+
 struct band {
   struct run *runs;
   size_t run_count, run_capacity;
   size_t row_start[BAND_ROWS + 1]; /* runs of the band's row k: row_start[k] .. row_start[k + 1] */
-  struct near_pair *pairs;
-  size_t pair_count, pair_capacity;
-  size_t *shared; /* cells whose share is not B(eps) */
+  size_t *shared;                  /* cells whose share is not B(eps) */
   size_t shared_count, shared_capacity;
   size_t shared_cells; /* cells of the band with more than one owner */
 };
@@ -60,6 +66,7 @@ struct occupation {
   double three_nu; /* tau - 1/2 of (19) */
   int reach;       /* cells by which runs are widened in the search for pairs, 0 or 1 */
   double minimum;  /* A_m of (23) */
+  bool find_pairs; /* false where another search finds them */
 
   size_t discs;
   bool painted;       /* at least once */
@@ -70,6 +77,7 @@ struct occupation {
   size_t *first_span; /* its spans in spans[] */
   size_t *first_cell; /* its cells in eps[] and share[] */
   struct span *spans;
+  struct moment_sums *sums; /* of each span: added up by the sweep, taken away by the exchange */
   double *eps, *share;
 
   uint32_t *order;      /* discs by x, then index */
@@ -77,6 +85,7 @@ struct occupation {
   uint32_t *band_discs; /* in the order above */
   size_t band_discs_capacity;
   struct band *bands;
+  struct pair_batch *batches; /* of each band */
   int band_count;
 };
 

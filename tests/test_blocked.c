@@ -1,0 +1,149 @@
+/* The sweep blocked in time, and single precision. */
+#include "fluid/boundary.h"
+#include "scenes.h"
+#include "sim/blocked.h"
+#include "sim/simulation.h"
+
+#include <criterion/criterion.h>
+#include <math.h>
+#include <omp.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Something moves everywhere, and nothing is symmetric. */
+static void stir(struct populations *p)
+{
+  for (int y = 0; y < p->ny; y++)
+    for (int x = 0; x < p->nx; x++)
+      for (int i = 0; i < Q; i++) {
+        const double wave = sin(0.3 * x + 0.7 * i) * cos(0.2 * y - 0.4 * i) + 0.1 * sin(1.7 * x * y);
+        populations_set(p, populations_source(p, i, x, y), 0.02 * d2q9_weight[i] * wave);
+      }
+}
+
+static struct scene stirred_box(int nx, int ny, int sides)
+{
+  struct scene scene = scene_box(nx, ny, 0.02, SIDES_CLOSED);
+  if (sides & 1) scene.domain.side[SIDE_LEFT].type = scene.domain.side[SIDE_RIGHT].type = SIDE_PERIODIC;
+  if (sides & 2) scene.domain.side[SIDE_BOTTOM].type = scene.domain.side[SIDE_TOP].type = SIDE_PERIODIC;
+  if (!(sides & 2)) scene.domain.side[SIDE_TOP].velocity[0] = 0.05;
+  if (!(sides & 1)) scene.domain.side[SIDE_LEFT].velocity[1] = -0.03;
+  return scene;
+}
+
+enum { NX = 75, NY = 70, STEPS = 23 };
+
+/* All populations after STEPS steps in blocks of `depth`, the last one shorter. */
+static void populations_after(const struct scene *scene, const struct blocking *blocking, int threads, double *all)
+{
+  struct status status;
+  struct flow flow;
+  const struct plan plan = plan_of(scene);
+  cr_assert(flow_create(&flow, scene, &plan, &status));
+  stir(&flow.populations);
+  for (int step = 0; step < STEPS;) {
+    const int block = blocking->depth < STEPS - step ? blocking->depth : STEPS - step;
+#pragma omp parallel num_threads(threads)
+    {
+      if (blocking->depth == 0)
+        stage_sweep(&flow, false, &(struct sweep_discs){0});
+      else
+        stage_sweep_blocked(&flow, blocking, block);
+    }
+    step += blocking->depth == 0 ? 1 : block;
+  }
+  for (int y = 0; y < NY && flow.populations.parity; y++) boundary_before_row(&flow.populations, scene->domain.side, y);
+  for (int k = 0; k < NX * NY; k++) populations_cell(&flow.populations, k % NX, k / NX, all + k * Q);
+  flow_destroy(&flow);
+}
+
+Test(blocked, any_depth_width_and_number_of_threads_gives_the_bits_of_single_steps)
+{
+  static const int depths[] = {1, 2, 3, 8, 11}, widths[] = {0, 16, 30}, threads[] = {1, 2, 3};
+  static double expected[NX * NY * Q], obtained[NX * NY * Q];
+  for (int sides = 0; sides < 4; sides++)
+    for (int force = 0; force < 2; force++) {
+      struct scene scene = stirred_box(NX, NY, sides);
+      if (force) scene.fluid.force[0] = 1e-4;
+      const struct blocking none = {.depth = 0};
+      populations_after(&scene, &none, 1, expected);
+      for (size_t d = 0; d < sizeof depths / sizeof depths[0]; d++)
+        for (size_t w = 0; w < sizeof widths / sizeof widths[0]; w++)
+          for (size_t t = 0; t < sizeof threads / sizeof threads[0]; t++) {
+            const struct blocking blocking = {.depth = depths[d], .width = widths[w]};
+            if (blocking.depth > blocked_deepest(NY, threads[t])) continue;
+            populations_after(&scene, &blocking, threads[t], obtained);
+            cr_expect_eq(memcmp(expected, obtained, sizeof expected), 0,
+                         "sides %d, force %d, depth %d, width %d, threads %d", sides, force, depths[d], widths[w],
+                         threads[t]);
+          }
+    }
+}
+
+/* Velocity after some steps of a lid-driven cavity, whatever the plan. */
+static void cavity(int depth, enum precision precision, int64_t steps, double *ux)
+{
+  struct scene scene = scene_box(160, 160, 0.05, SIDES_CLOSED);
+  scene.domain.side[SIDE_TOP].velocity[0] = 0.1;
+  scene.run.plan.depth = depth;
+  scene.fluid.precision = precision;
+  struct simulation *simulation;
+  struct status status;
+  cr_assert(simulation_create(&simulation, &scene, &status), "%s", status.message);
+  cr_assert(simulation_advance(simulation, steps, &status), "%s", status.message);
+  simulation_fields(simulation, NULL, ux, NULL);
+  simulation_destroy(simulation);
+}
+
+Test(blocked, a_run_gives_the_same_bits_with_any_plan)
+{
+  const size_t cells = 160 * 160;
+  double *first = malloc(cells * sizeof *first), *other = malloc(cells * sizeof *other);
+  cavity(1, PRECISION_DOUBLE, 777, first);
+  static const int depths[] = {0, 5, 16, 1000};
+  for (int k = 0; k < 4; k++) {
+    cavity(depths[k], PRECISION_DOUBLE, 777, other);
+    cr_expect_eq(memcmp(first, other, cells * sizeof *first), 0, "plan %d", depths[k]);
+  }
+  free(first);
+  free(other);
+}
+
+Test(single, precision_stays_within_1e_4_of_double_in_a_cavity)
+{
+  const size_t cells = 160 * 160;
+  double *in_double = malloc(cells * sizeof *in_double), *in_single = malloc(cells * sizeof *in_single), largest = 0;
+  cavity(0, PRECISION_DOUBLE, 10000, in_double);
+  cavity(0, PRECISION_SINGLE, 10000, in_single);
+  for (size_t k = 0; k < cells; k++) largest = fmax(largest, fabs(in_double[k] - in_single[k]) / 0.1);
+  cr_expect_lt(largest, 1e-4, "differs by %g of the lid's speed", largest);
+  free(in_double);
+  free(in_single);
+}
+
+/* The paper's single disc, before its wake turns unsteady. */
+static void settle(enum precision precision, double *y, double *vy)
+{
+  struct scene scene = scene_box(200, 400, 0.05, SIDES_CLOSED);
+  scene.fluid.precision = precision;
+  scene.fluid.zero_flux = true;
+  scene.particles.gravity[1] = -0.024525;
+  scene_add_disc(&scene, 10, 1.01, 100.3, 360);
+  struct simulation *simulation;
+  struct status status;
+  cr_assert(simulation_create(&simulation, &scene, &status), "%s", status.message);
+  cr_assert(simulation_advance(simulation, 3000, &status), "%s", status.message);
+  *y = simulation_discs(simulation)->y[0];
+  *vy = simulation_discs(simulation)->vy[0];
+  simulation_destroy(simulation);
+  scene_clear(&scene);
+}
+
+Test(single, precision_stays_within_1e_4_of_double_for_a_settling_disc)
+{
+  double y[2], vy[2];
+  settle(PRECISION_DOUBLE, &y[0], &vy[0]);
+  settle(PRECISION_SINGLE, &y[1], &vy[1]);
+  cr_expect_lt(fabs(y[1] - y[0]) / (360 - y[0]), 1e-4, "fallen %g and %g", 360 - y[0], 360 - y[1]);
+  cr_expect_lt(fabs(vy[1] / vy[0] - 1), 1e-4, "falls at %g and %g", vy[0], vy[1]);
+}
