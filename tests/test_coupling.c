@@ -64,7 +64,7 @@ Test(conservation, mass_is_constant_in_a_closed_box_with_moving_discs)
 static size_t shares_beyond_two(const struct occupation *o)
 {
   size_t beyond = 0;
-  for (int k = 0; k < o->band_count; k++) beyond += o->bands[k].shared_count - 2 * o->bands[k].shared_cells;
+  for (int k = 0; k < o->band_count; k++) beyond += o->bands[k].shared_owners - 2 * o->bands[k].shared_cells;
   return beyond;
 }
 

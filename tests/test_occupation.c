@@ -61,8 +61,8 @@ static void *cells_of(const struct painting *p)
   return cells;
 }
 
-/* Spreads a table (eps or share) of one disc over all cells of the box. */
-static void spread(const struct painting *p, const double *table, size_t disc, double *cells)
+/* Spreads one disc's eps, or its shares, over all cells of the box. */
+static void spread(const struct painting *p, bool shares, size_t disc, double *cells)
 {
   const int nx = p->scene.domain.size[0], ny = p->scene.domain.size[1];
   memset(cells, 0, sizeof *cells * (size_t)nx * (size_t)ny);
@@ -71,14 +71,15 @@ static void spread(const struct painting *p, const double *table, size_t disc, d
     const struct run *row = occupation_row(&p->occupation, y, &count);
     for (size_t r = 0; r < count; r++)
       for (int k = 0; row[r].disc == disc && k < row[r].n; k++)
-        cells[y * nx + row[r].x + k] += table[row[r].cell + (size_t)k];
+        cells[y * nx + row[r].x + k] += shares ? occupation_band(&p->occupation, y)->share[row[r].share + (size_t)k]
+                                               : p->occupation.eps[row[r].cell + (size_t)k];
   }
 }
 
 static double covered_area(const struct painting *p, size_t disc)
 {
   double *cells = cells_of(p), sum = 0;
-  spread(p, p->occupation.eps, disc, cells);
+  spread(p, false, disc, cells);
   for (int k = 0; k < p->scene.domain.size[0] * p->scene.domain.size[1]; k++) sum += cells[k];
   free(cells);
   return sum;
@@ -103,7 +104,7 @@ static double worst_cell(const struct painting *p, size_t disc)
 {
   double *cells = cells_of(p), worst = 0;
   const int nx = p->scene.domain.size[0], ny = p->scene.domain.size[1];
-  spread(p, p->occupation.eps, disc, cells);
+  spread(p, false, disc, cells);
   for (int k = 0; k < nx * ny; k++) {
     double corner[2];
     corner_of(p, disc, k % nx, k / nx, corner);
@@ -164,7 +165,7 @@ static void check_some_cells(const struct painting *p, gsl_rng *random, unsigned
   const int nx = p->scene.domain.size[0], cells_count = nx * p->scene.domain.size[1];
   double *cells = cells_of(p);
   int *partly = calloc((size_t)cells_count, sizeof *partly), count = 0;
-  spread(p, p->occupation.eps, 0, cells);
+  spread(p, false, 0, cells);
   for (int k = 0; k < cells_count; k++)
     if (cells[k] > 0 && cells[k] < 1) partly[count++] = k;
   cr_assert(count > 0);
@@ -335,7 +336,7 @@ static const char *compare_cells(const struct occupation *a, const struct occupa
       if (s->first != t->first || s->count != t->count || s->cell != t->cell) return "spans";
       const size_t bytes = (size_t)s->count * sizeof(double);
       if (memcmp(a->eps + s->cell, b->eps + s->cell, bytes)) return "eps";
-      if (memcmp(a->share + s->cell, b->share + s->cell, bytes)) return "share";
+      if (memcmp(a->weight + s->cell, b->weight + s->cell, bytes)) return "weight";
     }
   return NULL;
 }
@@ -356,7 +357,10 @@ static const char *compare(const struct occupation *a, const struct occupation *
     if (memcmp(s->row_start, t->row_start, sizeof s->row_start) || s->run_count != t->run_count) return "rows";
     for (size_t r = 0; r < s->run_count; r++)
       if (!same_run(&s->runs[r], &t->runs[r])) return "runs";
-    if (s->shared_cells != t->shared_cells) return "count of shared cells";
+    for (size_t r = 0; r < s->run_count; r++)
+      if (memcmp(s->share + s->runs[r].share, t->share + t->runs[r].share, (size_t)s->runs[r].n * sizeof(double)))
+        return "shares";
+    if (s->shared_cells != t->shared_cells || s->shared_owners != t->shared_owners) return "count of shared cells";
     if (a->batches[k].count != b->batches[k].count) return "count of pairs";
     for (size_t n = 0; n < a->batches[k].count; n++) {
       const struct near_pair *l = &a->batches[k].pairs[n], *r = &b->batches[k].pairs[n];
@@ -479,8 +483,8 @@ static void crowd_create(struct crowd *c, enum sides sides, int reach, unsigned 
   begin(&c->p, reach);
   paint(&c->p);
   for (size_t i = 0; i < CROWD; i++) {
-    spread(&c->p, c->p.occupation.eps, i, c->eps[i]);
-    spread(&c->p, c->p.occupation.share, i, c->share[i]);
+    spread(&c->p, false, i, c->eps[i]);
+    spread(&c->p, true, i, c->share[i]);
   }
   cr_assert(overlap_create(&c->pairs, CROWD, &status));
   cr_assert(overlap_join(&c->pairs, c->p.occupation.batches, (size_t)c->p.occupation.band_count, CROWD, &status));

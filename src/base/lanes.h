@@ -24,11 +24,11 @@ static inline __attribute__((always_inline)) void lanes_store(double *to, const 
   *(lanes_in_doubles *)to = *value;
 }
 
-/* The lanes below n, zero in the others. */
-static inline __attribute__((always_inline)) lanes lanes_first(lanes value, double n)
+/* One in the first n lanes (n > 0; all if there are more), zero in the others. A product with it is cheaper than a masked load. */
+static inline __attribute__((always_inline)) lanes lanes_first(int n)
 {
-  const lane_mask keep = lanes_count < n;
-  return (lanes)((lane_mask)value & keep);
+  static const double ones_and_zeros[2 * LANES] = {1, 1, 1, 1, 1, 1, 1, 1};
+  return lanes_load(ones_and_zeros + (n < LANES ? LANES - n : 0));
 }
 
 static inline __attribute__((always_inline)) lanes lanes_select(lane_mask where, lanes yes, lanes no)

@@ -23,8 +23,10 @@ void *memory_allocate(size_t count, size_t size, const char *what, struct status
   size_t bytes = 0;
   void *pointer = NULL;
   if (!__builtin_mul_overflow(count, size, &bytes) && bytes < SIZE_MAX / 2) {
-    bytes = bytes ? round_up(bytes, CACHE_LINE) : CACHE_LINE;
-    pointer = aligned_alloc(CACHE_LINE, bytes);
+    const size_t alignment = bytes < huge_page ? CACHE_LINE : huge_page;
+    bytes = bytes ? round_up(bytes, alignment) : CACHE_LINE;
+    pointer = aligned_alloc(alignment, bytes);
+    if (pointer && alignment == huge_page) madvise(pointer, bytes, MADV_HUGEPAGE);
   }
   if (!pointer) {
     out_of_memory(what, (double)count * (double)size, status);

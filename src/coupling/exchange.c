@@ -56,19 +56,27 @@ void exchange_destroy(struct exchange *e)
   *e = (struct exchange){0};
 }
 
-/* What the sweep left for a disc, row by row, and leaves again at zero; with the force of the coming step, and b = 2 share. */
-static struct gathered take_sums(const struct occupation *o, const struct sweep_constants *c, size_t disc)
+/* What the sweep found of a disc, row by row from the lowest; with the force of the coming step, and b = 2 share. */
+static struct gathered add_up(const struct occupation *o, const struct sweep_constants *c, size_t disc)
 {
-  struct moment_sums sums = {0};
-  struct moment_sums *rows = o->sums + o->first_span[disc];
-  for (int k = 0; k < o->rows[disc]; k++) {
-    moment_sums_add(&sums, &rows[k]);
-    rows[k] = (struct moment_sums){0};
-  }
+  struct gathered g = {0};
   const double gx = c->force[0], gy = c->force[1], zx = c->uniform[0], zy = c->uniform[1];
-  const double px = sums.jx + gx * sums.mass + zx * sums.share, py = sums.jy + gy * sums.mass + zy * sums.share;
-  const double l = sums.torque + (gy * sums.mx - gx * sums.my) + (zy * sums.sx - zx * sums.sy);
-  return (struct gathered){2 * px, 2 * py, 2 * l, 2 * sums.mass, 2 * sums.mx, 2 * sums.my, 2 * sums.mm};
+  for (int k = 0; k < o->rows[disc]; k++)
+    for (int piece = 0; piece < 2; piece++) {
+      int y;
+      const struct moment_sums *run = occupation_sums(o, disc, k, piece, &y);
+      if (!run) continue;
+      const double ry = y + 0.5 - o->y[disc];
+      const double px = run->jx + gx * run->mass + zx * run->share;
+      g.px += 2 * px;
+      g.py += 2 * (run->jy + gy * run->mass + zy * run->share);
+      g.l += 2 * (run->turn + gy * run->mx + zy * run->sx - ry * px);
+      g.m0 += 2 * run->mass;
+      g.m1x += 2 * run->mx;
+      g.m1y += 2 * ry * run->mass;
+      g.m2 += 2 * (run->mxx + ry * ry * run->mass);
+    }
+  return g;
 }
 
 void exchange_force(const struct gathered *g, double vx, double vy, double omega, double force[3])
@@ -141,7 +149,7 @@ void stage_exchange(struct exchange *e, const struct sweep_constants *constants,
 {
 #pragma omp for schedule(static)
   for (size_t i = 0; i < d->count; i++) {
-    e->gathered[i] = take_sums(o, constants, i);
+    e->gathered[i] = add_up(o, constants, i);
     e->response[i] = (struct response){0};
     if (d->motion[i] != DISC_FREE) continue;
     const double buoyant = d->mass[i] - d->fluid_mass[i];

@@ -27,7 +27,7 @@ static inline lanes widen(real_lanes value)
   return __builtin_convertvector(value, lanes);
 }
 
-void KERNEL(gather_run)(void *const a[Q], int n, const double *share, double rx, double ry, struct moment_sums *sums)
+void KERNEL(gather_run)(void *const a[Q], int n, const double *share, double rx, struct moment_sums *sums)
 {
   const REAL *a0 = a[0], *a1 = a[1], *a2 = a[2], *a3 = a[3], *a4 = a[4], *a5 = a[5], *a6 = a[6], *a7 = a[7], *a8 = a[8];
   const lanes zero = {0};
@@ -38,7 +38,7 @@ void KERNEL(gather_run)(void *const a[Q], int n, const double *share, double rx,
     const real_lanes d5 = f5 - f7, d6 = f6 - f8;
     const lanes jx = widen(f1 - f3 + (d5 - d6)), jy = widen(f2 - f4 + (d5 + d6));
     const lanes rho = 1 + widen(load(a0 + k) + (f1 + f3 + f2 + f4) + (f5 + f7 + f6 + f8));
-    const lanes s = lanes_first(lanes_load(share + k), n - k), r = (rx + k) + lanes_count;
+    const lanes s = lanes_load(share + k) * lanes_first(n - k), r = (rx + k) + lanes_count;
     const lanes mass = s * rho, sr = s * r;
     jx_sum += s * jx;
     jy_sum += s * jy;
@@ -49,17 +49,14 @@ void KERNEL(gather_run)(void *const a[Q], int n, const double *share, double rx,
     share_sum += s;
     sx += sr;
   }
-  const struct moment_sums run = {.jx = lanes_sum(jx_sum),
-                                  .jy = lanes_sum(jy_sum),
-                                  .torque = lanes_sum(turn) - ry * lanes_sum(jx_sum),
-                                  .mass = lanes_sum(mass_sum),
-                                  .mx = lanes_sum(mx),
-                                  .my = ry * lanes_sum(mass_sum),
-                                  .mm = lanes_sum(mxx) + ry * ry * lanes_sum(mass_sum),
-                                  .share = lanes_sum(share_sum),
-                                  .sx = lanes_sum(sx),
-                                  .sy = ry * lanes_sum(share_sum)};
-  moment_sums_add(sums, &run);
+  *sums = (struct moment_sums){.jx = lanes_sum(jx_sum),
+                               .jy = lanes_sum(jy_sum),
+                               .turn = lanes_sum(turn),
+                               .mass = lanes_sum(mass_sum),
+                               .mx = lanes_sum(mx),
+                               .mxx = lanes_sum(mxx),
+                               .share = lanes_sum(share_sum),
+                               .sx = lanes_sum(sx)};
 }
 
 /* Adds to eight elements of a row buffer. */
@@ -73,7 +70,7 @@ void KERNEL(paint_run)(const struct row_cover *row, int x, int n, const double *
 {
   REAL *b = (REAL *)row->b + x, *bvx = (REAL *)row->bvx + x, *bvy = (REAL *)row->bvy + x;
   for (int k = 0; k < n; k += LANES) {
-    const lanes s = lanes_first(lanes_load(share + k), n - k);
+    const lanes s = lanes_load(share + k) * lanes_first(n - k);
     add(b + k, s);
     add(bvx + k, s * vx);
     add(bvy + k, s * (vy + omega * (k + lanes_count)));

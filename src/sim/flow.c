@@ -62,7 +62,7 @@ void flow_start(struct flow *f, const struct occupation *o, const struct discs *
     for (size_t r = 0; r < count; r++) {
       const size_t disc = runs[r].disc;
       for (int k = 0; k < runs[r].n; k++) {
-        const double b = o->share[runs[r].cell + (size_t)k], omega = discs->omega[disc];
+        const double b = occupation_band(o, y)->share[runs[r].share + (size_t)k], omega = discs->omega[disc];
         const double vx = discs->vx[disc] - omega * runs[r].ry, vy = discs->vy[disc] + omega * (runs[r].rx + k);
         if (vx != 0 || vy != 0)
           set_equilibrium(&f->populations, runs[r].x + k, y, at_rest[0] + b * vx, at_rest[1] + b * vy);
@@ -91,7 +91,7 @@ static void sweep_row_at(struct flow *f, int y, const struct sweep_discs *discs)
     return;
   }
   struct cover *cover = &f->covers[omp_get_thread_num()];
-  cover_paint(cover, runs, count, o->share, discs->exchange->surface);
+  cover_paint(cover, runs, count, occupation_band(o, y)->share, discs->exchange->surface);
   f->kernel->discs[f->scene->coupling.form][f->force](a, nx, &f->constants, &cover->row, momentum);
   cover_clear(cover, runs, count);
 }
@@ -112,15 +112,15 @@ static void cancel_flux(struct flow *f)
 /* Takes the moments of row y, about to be collided in the state `p`, for the discs that cover it. */
 static void gather_row(const struct flow *f, struct populations *p, struct occupation *o, int y)
 {
-  size_t count;
-  const struct run *runs = occupation_row(o, y, &count);
+  const struct band *band = occupation_band(o, y);
+  const size_t first = band->row_start[y % BAND_ROWS], end = band->row_start[y % BAND_ROWS + 1];
   if (p->parity) boundary_before_row(p, f->scene->domain.side, y);
-  for (size_t r = 0; r < count; r++) {
-    const struct run *run = &runs[r];
+  for (size_t r = first; r < end; r++) {
+    const struct run *run = &band->runs[r];
     void *a[Q];
     if (run->n == 0) continue;
     populations_cells(p, run->x, y, a);
-    f->kernel->gather(a, run->n, o->share + run->cell, run->rx, run->ry, &o->sums[run->span]);
+    f->kernel->gather(a, run->n, band->share + run->share, run->rx, &band->sums[r]);
   }
 }
 

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SLACK = 8 }; /* elements past the last share that a kernel may read */
+enum { SLACK = 8 }; /* elements past a band's last share that a kernel may read */
 
 /* Rows and columns that a disc can touch. */
 static size_t most_lines(double radius)
@@ -45,9 +45,9 @@ static bool allocate(struct occupation *o, size_t spans, size_t cells, struct st
          (o->first_span = memory_allocate(n, sizeof *o->first_span, what, status)) &&
          (o->first_cell = memory_allocate(n, sizeof *o->first_cell, what, status)) &&
          (o->spans = memory_allocate(spans, sizeof *o->spans, what, status)) &&
-         (o->sums = memory_allocate(spans, sizeof *o->sums, what, status)) &&
+         (o->place = memory_allocate(2 * spans, sizeof *o->place, what, status)) &&
          (o->eps = memory_allocate(cells, sizeof *o->eps, what, status)) &&
-         (o->share = memory_allocate(cells + SLACK, sizeof *o->share, what, status)) &&
+         (o->weight = memory_allocate(cells, sizeof *o->weight, what, status)) &&
          (o->order = memory_allocate(n, sizeof *o->order, what, status)) &&
          (o->band_start = memory_allocate((size_t)o->band_count + 1, sizeof *o->band_start, what, status)) &&
          (o->bands = memory_allocate((size_t)o->band_count, sizeof *o->bands, what, status)) &&
@@ -90,10 +90,11 @@ void occupation_destroy(struct occupation *o)
   for (int k = 0; o->bands && k < o->band_count; k++) {
     free(o->bands[k].runs);
     if (o->batches) free(o->batches[k].pairs);
-    free(o->bands[k].shared);
+    free(o->bands[k].share);
+    free(o->bands[k].sums);
   }
-  void *const arrays[] = {o->x,          o->y,          o->column, o->row,    o->rows,  o->first_span,
-                          o->first_cell, o->spans,      o->sums,   o->eps,    o->share, o->order,
+  void *const arrays[] = {o->x,          o->y,          o->column, o->row,    o->rows,   o->first_span,
+                          o->first_cell, o->spans,      o->place,  o->eps,    o->weight, o->order,
                           o->band_start, o->band_discs, o->bands,  o->batches};
   for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; k++) free(arrays[k]);
   *o = (struct occupation){0};
@@ -101,7 +102,7 @@ void occupation_destroy(struct occupation *o)
 
 /* eps and B of the cells of one row, between the lines `low` and `high`; `columns` are the lines x = column, column + 1, ... */
 static void paint_row(double radius, double three_nu, const struct disc_line *low, const struct disc_line *high,
-                      const struct disc_line *columns, struct span *span, double *eps, double *share)
+                      const struct disc_line *columns, struct span *span, double *eps, double *weight)
 {
   const bool across = low->t < 0 && high->t > 0; /* the widest chord lies inside this row */
   const double wide = across ? radius : fmax(low->half_chord, high->half_chord);
@@ -120,7 +121,7 @@ static void paint_row(double radius, double three_nu, const struct disc_line *lo
       area = fmin(fmax(area, 0), 1); /* round-off */
     }
     eps[c - first] = area;
-    share[c - first] = occupation_weight(area, three_nu);
+    weight[c - first] = occupation_weight(area, three_nu);
   }
 }
 
@@ -137,7 +138,8 @@ static void paint_disc(struct occupation *o, size_t disc, double radius, double 
     struct span *span = &o->spans[o->first_span[disc] + (size_t)(r - row)];
     const struct disc_line high = disc_line_at(radius, r + 1 - y);
     span->cell = cell;
-    paint_row(radius, o->three_nu, &low, &high, columns, span, o->eps + cell, o->share + cell);
+    o->place[2 * (size_t)(span - o->spans)] = o->place[2 * (size_t)(span - o->spans) + 1] = no_run;
+    paint_row(radius, o->three_nu, &low, &high, columns, span, o->eps + cell, o->weight + cell);
     cell += (size_t)span->count;
     low = high;
   }
@@ -148,18 +150,10 @@ static void paint_disc(struct occupation *o, size_t disc, double radius, double 
   o->rows[disc] = row_end - row;
 }
 
-/* First the shares that other owners reduced are made whole again; then discs that moved are painted. */
+/* Discs that moved are painted. */
 static bool paint(struct occupation *o, const struct discs *discs, struct status *status)
 {
   bool failed = false;
-#pragma omp for schedule(static)
-  for (int k = 0; k < o->band_count; k++) {
-    for (size_t s = 0; s < o->bands[k].shared_count; s++) {
-      const size_t cell = o->bands[k].shared[s];
-      o->share[cell] = occupation_weight(o->eps[cell], o->three_nu);
-    }
-    o->bands[k].shared_count = 0;
-  }
   struct disc_line *columns = NULL;
   size_t capacity = 0;
 #pragma omp for schedule(dynamic, 8) nowait
@@ -320,11 +314,12 @@ int occupation_runs(const struct occupation *o, size_t disc, int k, struct run r
                             .rx = first + 0.5 - o->x[disc],
                             .ry = o->row[disc] + k + 0.5 - o->y[disc],
                             .cell = span->cell,
-                            .span = own ? o->first_span[disc] + (size_t)k : o->first_span[disc]};
+                            .place = own ? 2 * (o->first_span[disc] + (size_t)k) : no_run};
   int count = 0;
   const int shifts[3] = {0, o->size[0], -o->size[0]};
   for (int s = 0; s < (o->periodic[0] ? 3 : 1) && count < 2; s++) {
     runs[count] = whole;
+    runs[count].place += own ? (size_t)count : 0;
     count += cut_run(o, &runs[count], shifts[s], first, span->count, column + reach_first, column + reach_end);
   }
   return count;
@@ -381,6 +376,27 @@ static bool collect_runs(struct occupation *o, int index, struct status *status)
   return true;
 }
 
+/* Lays out the shares of a band's runs, as if each cell had one owner, and room for their sums. */
+static bool lay_out_shares(struct occupation *o, struct band *band, struct status *status)
+{
+  size_t cells = 0;
+  for (size_t r = 0; r < band->run_count; r++) {
+    band->runs[r].share = cells;
+    cells += (size_t)band->runs[r].n;
+  }
+  if (!memory_grow(&band->share, &band->share_capacity, cells + SLACK, sizeof *band->share, "a band's shares",
+                   status) ||
+      !memory_grow(&band->sums, &band->sums_capacity, band->run_count, sizeof *band->sums, "a band's sums", status))
+    return false;
+  for (size_t r = 0; r < band->run_count; r++) {
+    const struct run *run = &band->runs[r];
+    if (run->n == 0) continue;
+    o->place[run->place] = r;
+    memcpy(band->share + run->share, o->weight + run->cell, (size_t)run->n * sizeof *band->share);
+  }
+  return true;
+}
+
 static bool covers(const struct run *run, int x)
 {
   return x >= run->x && x < run->x + run->n;
@@ -391,34 +407,23 @@ static size_t cell_of(const struct run *run, int x)
   return run->cell + (size_t)(x - run->x);
 }
 
-/* Shares a cell among its owners: runs[0], runs[next] and perhaps some after that. */
-static bool share_cell(struct occupation *o, struct band *band, const struct run *runs, size_t count, int x,
-                       struct status *status)
+/* Shares a cell among its owners: runs[0], and some of those after it. */
+static void share_cell(struct occupation *o, struct band *band, const struct run *runs, size_t count, int x)
 {
   double total = 0;
-  size_t owners = 0, end = count;
-  for (size_t r = 0; r < count; r++) {
-    if (runs[r].reach_first > x) {
-      end = r;
-      break;
-    }
-    if (!covers(&runs[r], x)) continue;
-    total += o->eps[cell_of(&runs[r], x)];
+  size_t owners = 0, end = 0;
+  for (; end < count && runs[end].reach_first <= x; end++) {
+    if (!covers(&runs[end], x)) continue;
+    total += o->eps[cell_of(&runs[end], x)];
     owners++;
   }
-  if (total <= 0) return true;
-  if (!memory_grow(&band->shared, &band->shared_capacity, band->shared_count + owners, sizeof *band->shared,
-                   "a band's shared cells", status))
-    return false;
+  if (total <= 0) return;
   const double weight = occupation_weight(fmin(1, total), o->three_nu) / total;
-  for (size_t r = 0; r < end; r++) {
-    if (!covers(&runs[r], x)) continue;
-    const size_t cell = cell_of(&runs[r], x);
-    o->share[cell] = o->eps[cell] * weight;
-    band->shared[band->shared_count++] = cell;
-  }
+  for (size_t r = 0; r < end; r++)
+    if (covers(&runs[r], x))
+      band->share[runs[r].share + (size_t)(x - runs[r].x)] = o->eps[cell_of(&runs[r], x)] * weight;
   band->shared_cells++;
-  return true;
+  band->shared_owners += owners;
 }
 
 /* True if a run before runs[second], other than runs[first], covers the cell: it is then shared on their account. */
@@ -441,8 +446,7 @@ static bool meet(struct occupation *o, struct band *band, const struct run *row,
   for (int x = low; x < high; x++) {
     const double eps_l = o->eps[cell_of(l, x)], eps_r = o->eps[cell_of(r, x)];
     if (eps_l > 0 && eps_r > 0) area += fmax(0, eps_l + eps_r - o->minimum);
-    if (!shared_earlier(row, first, second, x) && !share_cell(o, band, row + first, count - first, x, status))
-      return false;
+    if (!shared_earlier(row, first, second, x)) share_cell(o, band, row + first, count - first, x);
   }
   if (l->disc == r->disc || !o->find_pairs) return true;
   if (!memory_grow(&batch->pairs, &batch->capacity, batch->count + 1, sizeof *batch->pairs, "a band's pairs", status))
@@ -455,7 +459,7 @@ static bool meet(struct occupation *o, struct band *band, const struct run *row,
 static bool find_shared(struct occupation *o, int index, struct status *status)
 {
   struct band *band = &o->bands[index];
-  o->batches[index].count = band->shared_cells = 0;
+  o->batches[index].count = band->shared_cells = band->shared_owners = 0;
   for (int k = 0; k < BAND_ROWS; k++) {
     const struct run *row = band->runs + band->row_start[k];
     const size_t count = band->row_start[k + 1] - band->row_start[k];
@@ -483,7 +487,8 @@ void stage_occupation(struct occupation *o, const struct discs *discs, struct te
   if (team->stop) return;
 #pragma omp for schedule(static)
   for (int k = 0; k < o->band_count; k++)
-    if (!collect_runs(o, k, &status) || !find_shared(o, k, &status)) team_fail(team, &status);
+    if (!collect_runs(o, k, &status) || !lay_out_shares(o, &o->bands[k], &status) || !find_shared(o, k, &status))
+      team_fail(team, &status);
 #pragma omp single
   {
     o->painted = true;

@@ -3,10 +3,11 @@
  * A disc is convex, so it covers one run of cells in each row. Its occupation fractions eps lie in a table of its own, run after
  * run; nothing is as large as the box. The step then needs, per row, the runs of all discs from left to right:
  *
- *   1. paint     per disc, in parallel: eps of its cells from line tables (disc_area.h), B(eps) (19) as its share.
- *   2. rows      per band of rows, in parallel: the runs of the band's rows, sorted by first cell. Runs that overlap share cells;
- *                there B follows from the total eps = min(1, sum eps_p), of which owner p has the share w_p B with
- *                w_p = eps_p/sum eps (22), for any number of owners. Two discs that share a cell are a candidate for contact.
+ *   1. paint     per disc, in parallel: eps of its cells from line tables (disc_area.h), and B(eps) (19).
+ *   2. rows      per band of rows, in parallel: the runs of the band's rows, sorted by first cell, and their shares of B in that
+ *                order, so that the sweep finds them one after another. Runs that overlap share cells; there B follows from
+ *                the total eps = min(1, sum eps_p), of which owner p has the share w_p B with w_p = eps_p/sum eps (22), for
+ *                any number of owners. Two discs that share a cell are a candidate for contact.
  *
  * A band's runs, and the shares of cells in its rows, are written by the one thread that has the band: no races. All orders
  * (discs along x, runs in a row, owners of a cell, bands) follow from positions and indices alone, never from threads or
@@ -29,8 +30,9 @@ struct run {
   int32_t reach_first, reach_end; /* cells that make discs candidates: the run's own, widened by the reach */
   uint32_t disc;
   double rx, ry; /* from the disc's centre to the centre of the first cell */
-  size_t cell;   /* of the first cell, in eps[] and share[] */
-  size_t span;   /* of the disc's row, in spans[] and sums[] */
+  size_t cell;   /* of the first cell, in the disc's tables eps[] and weight[] */
+  size_t share;  /* of the first cell, in the band's share[] */
+  size_t place;  /* where place[] keeps the run's number in its band */
 };
 
 /* Two discs, lower index first, that come within reach in a row, and what (23) adds to their overlap area there. */
@@ -49,9 +51,12 @@ struct band {
   struct run *runs;
   size_t run_count, run_capacity;
   size_t row_start[BAND_ROWS + 1]; /* runs of the band's row k: row_start[k] .. row_start[k + 1] */
-  size_t *shared;                  /* cells whose share is not B(eps) */
-  size_t shared_count, shared_capacity;
-  size_t shared_cells; /* cells of the band with more than one owner */
+  double *share;                   /* w_p B of the cells of all runs, one after another as the sweep meets them */
+  size_t share_capacity;
+  struct moment_sums *sums; /* of each run: taken by the sweep, added up by the exchange */
+  size_t sums_capacity;
+  size_t shared_cells;  /* cells of the band with more than one owner */
+  size_t shared_owners; /* and their owners, all told */
 };
 
 /* The cells of a disc in one row of its own: columns first .. first + count - 1 from its left edge. */
@@ -75,10 +80,10 @@ struct occupation {
   int32_t *row;       /* of its lowest cell */
   int32_t *rows;      /* how many it covers */
   size_t *first_span; /* its spans in spans[] */
-  size_t *first_cell; /* its cells in eps[] and share[] */
+  size_t *first_cell; /* its cells in eps[] and weight[] */
   struct span *spans;
-  struct moment_sums *sums; /* of each span: added up by the sweep, taken away by the exchange */
-  double *eps, *share;
+  size_t *place;        /* [2 span + piece] the run's number in its band, or no_run */
+  double *eps, *weight; /* and B(eps) */
 
   uint32_t *order;      /* discs by x, then index */
   size_t *band_start;   /* [bands + 1] discs of band k: band_discs[band_start[k]] .. */
@@ -101,13 +106,32 @@ double occupation_bytes(const struct scene *scene);
  * not painted again. Fails if memory runs out. */
 void stage_occupation(struct occupation *occupation, const struct discs *discs, struct team *team);
 
+static const size_t no_run = SIZE_MAX;
+
+/* The band that row y lies in. */
+static inline struct band *occupation_band(const struct occupation *o, int y)
+{
+  return &o->bands[y / BAND_ROWS];
+}
+
 /* The runs of row y, from left to right. */
 static inline const struct run *occupation_row(const struct occupation *o, int y, size_t *count)
 {
-  const struct band *band = &o->bands[y / BAND_ROWS];
+  const struct band *band = occupation_band(o, y);
   const size_t start = band->row_start[y % BAND_ROWS];
   *count = band->row_start[y % BAND_ROWS + 1] - start;
   return band->runs + start;
+}
+
+/* The sums of one piece of the disc's row k, and that row before wrapping; NULL where nothing of it lies in the box. */
+static inline const struct moment_sums *occupation_sums(const struct occupation *o, size_t disc, int k, int piece,
+                                                        int *y)
+{
+  const size_t place = o->place[2 * (o->first_span[disc] + (size_t)k) + (size_t)piece];
+  const int ny = o->size[1];
+  *y = o->row[disc] + k;
+  const int row = !o->periodic[1] ? *y : *y < 0 ? *y + ny : *y >= ny ? *y - ny : *y;
+  return place == no_run || row < 0 || row >= ny ? NULL : &occupation_band(o, row)->sums[place];
 }
 
 /* Cuts span `s` (of the disc's row number k) to the box: at most two runs, and none where the row lies outside. Returns how many. */
