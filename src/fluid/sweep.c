@@ -1,5 +1,7 @@
 #include "fluid/sweep.h"
 
+#include "base/processor.h"
+
 #include <string.h>
 
 #define DECLARE(variant)                                                                                               \
@@ -15,28 +17,18 @@ static bool always(void)
   return true;
 }
 
-#ifdef __x86_64__
-static bool has_avx2(void)
-{
-  return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-}
-
-static bool has_avx512(void)
-{
-  return has_avx2() && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-         __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw");
-}
-#endif
-
 static const struct {
   const struct sweep_kernel *kernel;
   bool (*runs_here)(void);
 } kernels[] = {
 #ifdef __x86_64__
-    {&sweep_kernel_avx512_double, has_avx512}, {&sweep_kernel_avx512_float, has_avx512},
-    {&sweep_kernel_avx2_double, has_avx2},     {&sweep_kernel_avx2_float, has_avx2},
+    {&sweep_kernel_avx512_double, processor_has_avx512},
+    {&sweep_kernel_avx512_float, processor_has_avx512},
+    {&sweep_kernel_avx2_double, processor_has_avx2},
+    {&sweep_kernel_avx2_float, processor_has_avx2},
 #endif
-    {&sweep_kernel_baseline_double, always},   {&sweep_kernel_baseline_float, always},
+    {&sweep_kernel_baseline_double, always},
+    {&sweep_kernel_baseline_float, always},
 };
 enum { KERNELS = sizeof kernels / sizeof kernels[0] };
 

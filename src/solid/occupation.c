@@ -1,7 +1,7 @@
 #include "solid/occupation.h"
 
 #include "base/memory.h"
-#include "solid/disc_area.h"
+#include "solid/area.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -15,10 +15,10 @@ static size_t most_lines(double radius)
   return (size_t)ceil(2 * radius) + 2;
 }
 
-/* Cells that a disc can touch: those within half a cell's diagonal, and one more all round. */
+/* Cells that a disc can touch: those within half a cell's diagonal, and one more all round; and what the kernel pads. */
 static size_t most_cells(double radius)
 {
-  return (size_t)ceil(M_PI * (radius + 1.5) * (radius + 1.5));
+  return (size_t)ceil(M_PI * (radius + 1.5) * (radius + 1.5)) + AREA_PAD;
 }
 
 double occupation_bytes(const struct scene *scene)
@@ -62,6 +62,7 @@ bool occupation_create(struct occupation *o, const struct scene *scene, const st
                            .three_nu = 3 * scene->fluid.viscosity,
                            .reach = reach,
                            .minimum = 0.95,
+                           .area = area_find(scene->fluid.kernel),
                            .find_pairs = scene->contact.search == SEARCH_GRID,
                            .discs = discs->count,
                            .band_count = (scene->domain.size[1] + BAND_ROWS - 1) / BAND_ROWS};
@@ -100,71 +101,87 @@ void occupation_destroy(struct occupation *o)
   *o = (struct occupation){0};
 }
 
-/* eps and B of the cells of one row, between the lines `low` and `high`; `columns` are the lines x = column, column + 1, ... */
-static void paint_row(double radius, double three_nu, const struct disc_line *low, const struct disc_line *high,
-                      const struct disc_line *columns, struct span *span, double *eps, double *weight)
+/* Line tables of one disc at a time; a thread's own. Eight arrays of `size` elements in one block. */
+struct lines {
+  double *block;
+  size_t capacity;
+  double *column_t, *column_area, *row_t, *row_h, *row_area, *low, *high, *unused;
+};
+
+static bool lines_prepare(struct lines *l, size_t count, struct status *status)
 {
-  const bool across = low->t < 0 && high->t > 0; /* the widest chord lies inside this row */
-  const double wide = across ? radius : fmax(low->half_chord, high->half_chord);
-  const double narrow = fmin(low->half_chord, high->half_chord);
-  int first = (int)floor(-wide - columns[0].t), end = (int)ceil(wide - columns[0].t);
-  if (first < 0) first = 0; /* round-off in wide */
-  int full = (int)ceil(-narrow - columns[0].t), full_end = (int)floor(narrow - columns[0].t);
-  if (full >= full_end || narrow <= 0) full = full_end = end;
-  span->first = first;
-  span->count = end - first;
-  for (int c = first; c < end; c++) {
-    double area = 1;
-    if (c < full || c >= full_end) {
-      area = disc_corner_area(radius, &columns[c], low) - disc_corner_area(radius, &columns[c + 1], low) -
-             disc_corner_area(radius, &columns[c], high) + disc_corner_area(radius, &columns[c + 1], high);
-      area = fmin(fmax(area, 0), 1); /* round-off */
-    }
-    eps[c - first] = area;
-    weight[c - first] = occupation_weight(area, three_nu);
-  }
+  const size_t size = count + AREA_PAD;
+  if (!memory_grow(&l->block, &l->capacity, 8 * size, sizeof *l->block, "a disc's lines", status)) return false;
+  double **const arrays[8] = {&l->column_t, &l->column_area, &l->row_t, &l->row_h,
+                              &l->row_area, &l->low,         &l->high,  &l->unused};
+  for (size_t k = 0; k < 8; k++) *arrays[k] = l->block + k * size;
+  return true;
+}
+
+/* Where a row's run begins and ends, and within it the cells whose corners all lie inside the disc. Columns count from the one
+ * whose line lies at distance `left` from the centre. */
+struct extent {
+  int first, end, full, full_end;
+};
+
+static struct extent row_extent(double radius, double left, double t_low, double h_low, double t_high, double h_high)
+{
+  const bool across = t_low < 0 && t_high > 0; /* the widest chord lies inside this row */
+  const double wide = across ? radius : fmax(h_low, h_high), narrow = fmin(h_low, h_high);
+  struct extent e = {.first = (int)floor(-wide - left),
+                     .end = (int)ceil(wide - left),
+                     .full = (int)ceil(-narrow - left),
+                     .full_end = (int)floor(narrow - left)};
+  if (e.first < 0) e.first = 0; /* round-off in wide */
+  if (e.full >= e.full_end || narrow <= 0) e.full = e.full_end = e.end;
+  return e;
 }
 
 /* Lines are taken at their distance from the centre, computed as line - centre: the same bits wherever they are
  * needed. For a row, round-off may put the disc's right edge past column_end: hence one line more. */
-static void paint_disc(struct occupation *o, size_t disc, double radius, double x, double y, struct disc_line *columns)
+static void paint_disc(struct occupation *o, size_t disc, double radius, double x, double y, struct lines *l)
 {
-  const int column = (int)floor(x - radius), column_end = (int)ceil(x + radius);
-  const int row = (int)floor(y - radius), row_end = (int)ceil(y + radius);
-  for (int c = column; c <= column_end + 1; c++) columns[c - column] = disc_line_at(radius, c - x);
+  const int column = (int)floor(x - radius), columns = (int)ceil(x + radius) - column + 2;
+  const int row = (int)floor(y - radius), rows = (int)ceil(y + radius) - row;
+  o->area->lines(radius, x, column, columns, l->column_t, l->unused, l->column_area);
+  o->area->lines(radius, y, row, rows + 1, l->row_t, l->row_h, l->row_area);
+  o->area->corners(radius, l->row_t[0], l->row_h[0], l->row_area[0], columns, l->column_t, l->column_area, l->low);
   size_t cell = o->first_cell[disc];
-  struct disc_line low = disc_line_at(radius, row - y);
-  for (int r = row; r < row_end; r++) {
-    struct span *span = &o->spans[o->first_span[disc] + (size_t)(r - row)];
-    const struct disc_line high = disc_line_at(radius, r + 1 - y);
-    span->cell = cell;
+  for (int r = 0; r < rows; r++) {
+    struct span *span = &o->spans[o->first_span[disc] + (size_t)r];
+    const struct extent e =
+        row_extent(radius, l->column_t[0], l->row_t[r], l->row_h[r], l->row_t[r + 1], l->row_h[r + 1]);
+    o->area->corners(radius, l->row_t[r + 1], l->row_h[r + 1], l->row_area[r + 1], columns, l->column_t, l->column_area,
+                     l->high);
+    o->area->cells(l->low, l->high, e.first, e.end, e.full, e.full_end, o->three_nu, o->eps + cell, o->weight + cell);
+    *span = (struct span){.first = e.first, .count = e.end - e.first, .cell = cell};
     o->place[2 * (size_t)(span - o->spans)] = o->place[2 * (size_t)(span - o->spans) + 1] = no_run;
-    paint_row(radius, o->three_nu, &low, &high, columns, span, o->eps + cell, o->weight + cell);
     cell += (size_t)span->count;
-    low = high;
+    double *const swap = l->low;
+    l->low = l->high;
+    l->high = swap;
   }
   o->x[disc] = x;
   o->y[disc] = y;
   o->column[disc] = column;
   o->row[disc] = row;
-  o->rows[disc] = row_end - row;
+  o->rows[disc] = rows;
 }
 
 /* Discs that moved are painted. */
 static bool paint(struct occupation *o, const struct discs *discs, struct status *status)
 {
   bool failed = false;
-  struct disc_line *columns = NULL;
-  size_t capacity = 0;
+  struct lines lines = {0};
 #pragma omp for schedule(dynamic, 8) nowait
   for (size_t i = 0; i < o->discs; i++) {
     if (failed || (o->painted && o->x[i] == discs->x[i] && o->y[i] == discs->y[i])) continue;
-    if (!memory_grow(&columns, &capacity, most_lines(discs->radius[i]) + 1, sizeof *columns, "a disc's lines", status))
-      failed = true;
+    if (lines_prepare(&lines, most_lines(discs->radius[i]) + 1, status))
+      paint_disc(o, i, discs->radius[i], discs->x[i], discs->y[i], &lines);
     else
-      paint_disc(o, i, discs->radius[i], discs->x[i], discs->y[i], columns);
+      failed = true;
   }
-  free(columns);
+  free(lines.block);
   return !failed;
 }
 

@@ -23,6 +23,8 @@
 
 enum { BAND_ROWS = 16 };
 
+struct area_kernel;
+
 /* Cells of one disc in one row of the box, wrapped and cut: x .. x + n - 1. Runs without cells (n = 0) only announce that the
  * disc is within reach. */
 struct run {
@@ -72,6 +74,8 @@ struct occupation {
   int reach;       /* cells by which runs are widened in the search for pairs, 0 or 1 */
   double minimum;  /* A_m of (23) */
   bool find_pairs; /* false where another search finds them */
+
+  const struct area_kernel *area;
 
   size_t discs;
   bool painted;       /* at least once */
