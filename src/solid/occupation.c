@@ -90,6 +90,7 @@ void occupation_destroy(struct occupation *o)
 {
   for (int k = 0; o->bands && k < o->band_count; k++) {
     free(o->bands[k].runs);
+    free(o->bands[k].found);
     if (o->batches) free(o->batches[k].pairs);
     free(o->bands[k].share);
     free(o->bands[k].sums);
@@ -347,48 +348,53 @@ static int run_before(const struct run *l, const struct run *r)
   return l->reach_first < r->reach_first || (l->reach_first == r->reach_first && l->disc < r->disc);
 }
 
-/* The runs of the band's rows: counted, placed, and each row put in order (nearly so already, as discs come along x). */
-static bool collect_runs(struct occupation *o, int index, struct status *status)
+/* The runs of the band's rows, disc by disc along x, into found[]; count[k] of them in row k of the band. */
+static bool find_runs(struct occupation *o, int index, size_t count[BAND_ROWS], struct status *status)
 {
   struct band *band = &o->bands[index];
   const bool periodic = o->periodic[1];
   const int first_row = index * BAND_ROWS;
   const int end_row = first_row + BAND_ROWS < o->size[1] ? first_row + BAND_ROWS : o->size[1];
-  size_t count[BAND_ROWS + 1] = {0};
-  for (int pass = 0; pass < 2; pass++) {
-    for (size_t d = o->band_start[index]; d < o->band_start[index + 1]; d++) {
-      const uint32_t disc = o->band_discs[d];
-      for (int image = periodic ? -1 : 0; image <= (periodic ? 1 : 0); image++) {
-        const int low = first_row + image * o->size[1] - o->row[disc], high = low + end_row - first_row;
-        const int k_end = high < o->rows[disc] + o->reach ? high : o->rows[disc] + o->reach;
-        for (int k = low > -o->reach ? low : -o->reach; k < k_end; k++) {
-          struct run runs[2];
-          int y;
-          const int n = occupation_runs(o, disc, k, runs, &y);
-          if (n == 0) continue;
-          if (pass == 0)
-            count[y - first_row + 1] += (size_t)n;
-          else
-            for (int r = 0; r < n; r++) band->runs[count[y - first_row]++] = runs[r];
-        }
+  const size_t most = 2 * (size_t)(end_row - first_row) + 2; /* runs of one disc: two pieces a row */
+  band->run_count = 0;
+  for (size_t d = o->band_start[index]; d < o->band_start[index + 1]; d++) {
+    const uint32_t disc = o->band_discs[d];
+    if (!memory_grow(&band->found, &band->found_capacity, band->run_count + most, sizeof *band->found, "a band's runs",
+                     status))
+      return false;
+    for (int image = periodic ? -1 : 0; image <= (periodic ? 1 : 0); image++) {
+      const int low = first_row + image * o->size[1] - o->row[disc], high = low + end_row - first_row;
+      const int k_end = high < o->rows[disc] + o->reach ? high : o->rows[disc] + o->reach;
+      for (int k = low > -o->reach ? low : -o->reach; k < k_end; k++) {
+        int y = first_row;
+        const int n = occupation_runs(o, disc, k, &band->found[band->run_count], &y);
+        for (int r = 0; r < n; r++) band->found[band->run_count++].row = y - first_row;
+        count[y - first_row] += (size_t)n;
       }
     }
-    if (pass == 1) break;
-    for (int r = 0; r < BAND_ROWS; r++) count[r + 1] += count[r];
-    memcpy(band->row_start, count, sizeof count);
-    if (!memory_grow(&band->runs, &band->run_capacity, count[BAND_ROWS], sizeof *band->runs, "a band's runs", status))
-      return false;
   }
-  band->run_count = band->row_start[BAND_ROWS];
-  for (int r = 0; r < BAND_ROWS; r++) {
-    struct run *row = band->runs + band->row_start[r];
-    const size_t n = band->row_start[r + 1] - band->row_start[r];
-    for (size_t k = 1; k < n; k++) {
-      const struct run run = row[k];
-      size_t at = k;
-      for (; at > 0 && run_before(&run, &row[at - 1]); at--) row[at] = row[at - 1];
-      row[at] = run;
-    }
+  return true;
+}
+
+/* The band's runs row by row, each row in order: nearly so already, as discs come along x. */
+static bool collect_runs(struct occupation *o, int index, struct status *status)
+{
+  struct band *band = &o->bands[index];
+  size_t count[BAND_ROWS] = {0}, next[BAND_ROWS];
+  if (!find_runs(o, index, count, status)) return false;
+  if (!memory_grow(&band->runs, &band->run_capacity, band->run_count, sizeof *band->runs, "a band's runs", status))
+    return false;
+  band->row_start[0] = 0;
+  for (int k = 0; k < BAND_ROWS; k++) {
+    next[k] = band->row_start[k];
+    band->row_start[k + 1] = band->row_start[k] + count[k];
+  }
+  for (size_t f = 0; f < band->run_count; f++) {
+    const struct run *run = &band->found[f];
+    const size_t start = band->row_start[run->row];
+    size_t at = next[run->row]++;
+    for (; at > start && run_before(run, &band->runs[at - 1]); at--) band->runs[at] = band->runs[at - 1];
+    band->runs[at] = *run;
   }
   return true;
 }

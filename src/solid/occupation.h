@@ -31,6 +31,7 @@ struct run {
   int32_t x, n;
   int32_t reach_first, reach_end; /* cells that make discs candidates: the run's own, widened by the reach */
   uint32_t disc;
+  int32_t row;   /* of its band */
   double rx, ry; /* from the disc's centre to the centre of the first cell */
   size_t cell;   /* of the first cell, in the disc's tables eps[] and weight[] */
   size_t share;  /* of the first cell, in the band's share[] */
@@ -52,6 +53,8 @@ struct pair_batch {
 struct band {
   struct run *runs;
   size_t run_count, run_capacity;
+  struct run *found; /* the same runs in the order found */
+  size_t found_capacity;
   size_t row_start[BAND_ROWS + 1]; /* runs of the band's row k: row_start[k] .. row_start[k + 1] */
   double *share;                   /* w_p B of the cells of all runs, one after another as the sweep meets them */
   size_t share_capacity;
