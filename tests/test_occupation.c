@@ -336,7 +336,6 @@ static const char *compare_cells(const struct occupation *a, const struct occupa
       if (s->first != t->first || s->count != t->count || s->cell != t->cell) return "spans";
       const size_t bytes = (size_t)s->count * sizeof(double);
       if (memcmp(a->eps + s->cell, b->eps + s->cell, bytes)) return "eps";
-      if (memcmp(a->weight + s->cell, b->weight + s->cell, bytes)) return "weight";
     }
   return NULL;
 }

@@ -194,10 +194,11 @@ static struct scene some_scene(void)
 
 static struct summary some_summary(const struct scene *scene)
 {
-  return (struct summary){.scene = scene,
-                          .steps = 50,
-                          .seconds = 2,
-                          .report = {.threads = 3, .kernel = "plain", .mass_drift = 0.5, .momentum_drift = NAN}};
+  return (struct summary){
+      .scene = scene,
+      .steps = 50,
+      .seconds = 2,
+      .report = {.threads = 3, .kernel = "plain", .plan = "16", .mass_drift = 0.5, .momentum_drift = NAN}};
 }
 
 static char *run_json(const struct summary *summary)
@@ -236,7 +237,8 @@ Test(summary, run_json_holds_the_figures)
   char *json = run_json(&summary);
   assert_starts(json, "{\n  \"status\": \"done\",\n  \"steps\": 50,\n");
   assert_holds(json, "\n  \"mlups\": 0.0050000000000000001,\n");
-  assert_holds(json, "\n  \"threads\": 3,\n  \"kernel\": \"plain\",\n  \"precision\": \"double\",\n  \"stages\": {\n");
+  assert_holds(json, "\n  \"threads\": 3,\n  \"kernel\": \"plain\",\n  \"plan\": \"16\",\n  \"precision\": "
+                     "\"double\",\n  \"stages\": {\n");
   assert_holds(json, "\n    \"output\": 0.25\n  },\n  \"mass_drift\": 0.5,\n");
   assert_holds(json, "\n  \"title\": \"Title\"\n}\n");
 }
@@ -279,7 +281,7 @@ Test(summary, the_line_is_one_line_of_pairs)
   summary.message = "two\nlines";
   char *line = line_of(&summary);
   const char *start =
-      "delbm: status=interrupted steps=50 seconds=2 mlups=0.005 threads=3 kernel=plain precision=double "
+      "delbm: status=interrupted steps=50 seconds=2 mlups=0.005 threads=3 kernel=plain plan=16 precision=double "
       "occupation=0 contact=0 exchange=0 sweep=0 boundary=0 output=0 mass_drift=0.5 momentum_drift=- ";
   assert_starts(line, start);
   cr_assert_eq(strchr(line, '\n'), line + strlen(line) - 1);

@@ -196,7 +196,7 @@ static const char full[] = "title: \"All keys: \\\"one\\\" # two\\n\\u00fc\\u202
                            "  fill: {pattern: jittered-grid, spacing: 20, radius: 5, density: 3, jitter: 1.5,\n"
                            "         region: [0, 0, 100, 50.5], seed: 4294967295}\n"
                            "contact:\n"
-                           "  area: cells\n"
+                           "  area: lens\n"
                            "  search: linked-cell\n"
                            "  stiffness: 0.5\n"
                            "  alpha: 0.25\n"
@@ -253,7 +253,7 @@ Test(scene, full_case_gives_contact_run_and_output)
   struct reading reading = read_text(full);
   const struct scene *scene = &reading.scene;
   cr_assert(reading.valid);
-  cr_expect(scene->contact.area == AREA_CELLS && scene->contact.search == SEARCH_LINKED_CELL);
+  cr_expect(scene->contact.area == AREA_LENS && scene->contact.search == SEARCH_LINKED_CELL);
   cr_expect(scene->contact.stiffness == 0.5 && scene->contact.alpha == 0.25 && scene->contact.damping == 0);
   cr_expect(scene->contact.damping_form == DAMPING_PRINTED && scene->contact.substeps == 4);
   cr_expect_eq(scene->contact.steps_per_contact, 30);

@@ -14,14 +14,17 @@ typedef void area_lines(double radius, double centre, int first, int count, doub
 typedef void area_corners(double radius, double t_b, double h_b, double area_b, int count, const double *t,
                           const double *area, double *corner);
 
-/* eps and B(eps) (19) of cells first .. end - 1 between two lines of corners; those from full to full_end - 1 are covered. */
-typedef void area_cells(const double *low, const double *high, int first, int end, int full, int full_end,
-                        double three_nu, double *eps, double *weight);
+/* eps of cells first .. end - 1 between two lines of corners; those from full to full_end - 1 are covered. */
+typedef void area_cells(const double *low, const double *high, int first, int end, int full, int full_end, double *eps);
+
+/* B(eps) (19) of `count` cells. */
+typedef void area_weights(const double *eps, int count, double three_nu, double *weight);
 
 struct area_kernel {
   area_lines *lines;
   area_corners *corners;
   area_cells *cells;
+  area_weights *weights;
 };
 
 /* The kernel of the instruction set that a sweep kernel's name begins with (baseline, avx2, avx512); with NULL the best. */

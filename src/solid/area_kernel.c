@@ -74,7 +74,7 @@ static void KERNEL(corners)(double radius, double t_b, double h_b, double area_b
 }
 
 static void KERNEL(cells)(const double *restrict low, const double *restrict high, int first, int end, int full,
-                          int full_end, double three_nu, double *restrict eps, double *restrict weight)
+                          int full_end, double *restrict eps)
 {
   const int n = whole_vectors(end - first);
 #pragma omp simd
@@ -83,11 +83,16 @@ static void KERNEL(cells)(const double *restrict low, const double *restrict hig
     double area = low[c] - low[c + 1] - (high[c] - high[c + 1]);
     area = area > 0 ? area : 0; /* round-off */
     area = area < 1 ? area : 1;
-    area = c >= full && c < full_end ? 1 : area;
-    eps[k] = area;
-    weight[k] = area * three_nu / ((1 - area) + three_nu);
+    eps[k] = c >= full && c < full_end ? 1 : area;
   }
 }
 
+static void KERNEL(weights)(const double *restrict eps, int count, double three_nu, double *restrict weight)
+{
+  const int n = whole_vectors(count);
+#pragma omp simd
+  for (int k = 0; k < n; k++) weight[k] = eps[k] * three_nu / ((1 - eps[k]) + three_nu);
+}
+
 extern const struct area_kernel KERNEL(area_kernel);
-const struct area_kernel KERNEL(area_kernel) = {KERNEL(lines), KERNEL(corners), KERNEL(cells)};
+const struct area_kernel KERNEL(area_kernel) = {KERNEL(lines), KERNEL(corners), KERNEL(cells), KERNEL(weights)};

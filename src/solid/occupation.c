@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SLACK = 8 }; /* elements past a band's last share that a kernel may read */
+enum { SLACK = AREA_PAD }; /* elements past a band's last share that kernels may touch */
 
 /* Rows and columns that a disc can touch. */
 static size_t most_lines(double radius)
@@ -26,7 +26,7 @@ double occupation_bytes(const struct scene *scene)
   double bytes = 0;
   for (size_t i = 0; i < scene->particles.count; i++) {
     const double radius = scene->particles.discs[i].radius;
-    bytes += (double)most_cells(radius) * 2 * sizeof(double);
+    bytes += (double)most_cells(radius) * 2 * sizeof(double); /* eps, shares */
     bytes += (double)most_lines(radius) * (sizeof(struct span) + sizeof(struct run));
     bytes += 2 * sizeof(double) + 3 * sizeof(int32_t) + 2 * sizeof(size_t) + 2 * sizeof(uint32_t);
   }
@@ -47,7 +47,6 @@ static bool allocate(struct occupation *o, size_t spans, size_t cells, struct st
          (o->spans = memory_allocate(spans, sizeof *o->spans, what, status)) &&
          (o->place = memory_allocate(2 * spans, sizeof *o->place, what, status)) &&
          (o->eps = memory_allocate(cells, sizeof *o->eps, what, status)) &&
-         (o->weight = memory_allocate(cells, sizeof *o->weight, what, status)) &&
          (o->order = memory_allocate(n, sizeof *o->order, what, status)) &&
          (o->band_start = memory_allocate((size_t)o->band_count + 1, sizeof *o->band_start, what, status)) &&
          (o->bands = memory_allocate((size_t)o->band_count, sizeof *o->bands, what, status)) &&
@@ -95,9 +94,9 @@ void occupation_destroy(struct occupation *o)
     free(o->bands[k].share);
     free(o->bands[k].sums);
   }
-  void *const arrays[] = {o->x,          o->y,          o->column, o->row,    o->rows,   o->first_span,
-                          o->first_cell, o->spans,      o->place,  o->eps,    o->weight, o->order,
-                          o->band_start, o->band_discs, o->bands,  o->batches};
+  void *const arrays[] = {o->x,          o->y,          o->column,     o->row,   o->rows,
+                          o->first_span, o->first_cell, o->spans,      o->place, o->eps,
+                          o->order,      o->band_start, o->band_discs, o->bands, o->batches};
   for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; k++) free(arrays[k]);
   *o = (struct occupation){0};
 }
@@ -154,7 +153,7 @@ static void paint_disc(struct occupation *o, size_t disc, double radius, double 
         row_extent(radius, l->column_t[0], l->row_t[r], l->row_h[r], l->row_t[r + 1], l->row_h[r + 1]);
     o->area->corners(radius, l->row_t[r + 1], l->row_h[r + 1], l->row_area[r + 1], columns, l->column_t, l->column_area,
                      l->high);
-    o->area->cells(l->low, l->high, e.first, e.end, e.full, e.full_end, o->three_nu, o->eps + cell, o->weight + cell);
+    o->area->cells(l->low, l->high, e.first, e.end, e.full, e.full_end, o->eps + cell);
     *span = (struct span){.first = e.first, .count = e.end - e.first, .cell = cell};
     o->place[2 * (size_t)(span - o->spans)] = o->place[2 * (size_t)(span - o->spans) + 1] = no_run;
     cell += (size_t)span->count;
@@ -399,7 +398,8 @@ static bool collect_runs(struct occupation *o, int index, struct status *status)
   return true;
 }
 
-/* Lays out the shares of a band's runs, as if each cell had one owner, and room for their sums. */
+/* Lays out the shares of a band's runs, as if each cell had one owner, and room for their sums. What a kernel writes past the end
+ * of a run is overwritten by the next. */
 static bool lay_out_shares(struct occupation *o, struct band *band, struct status *status)
 {
   size_t cells = 0;
@@ -415,7 +415,7 @@ static bool lay_out_shares(struct occupation *o, struct band *band, struct statu
     const struct run *run = &band->runs[r];
     if (run->n == 0) continue;
     o->place[run->place] = r;
-    memcpy(band->share + run->share, o->weight + run->cell, (size_t)run->n * sizeof *band->share);
+    o->area->weights(o->eps + run->cell, run->n, o->three_nu, band->share + run->share);
   }
   return true;
 }

@@ -3,8 +3,8 @@
  * A disc is convex, so it covers one run of cells in each row. Its occupation fractions eps lie in a table of its own, run after
  * run; nothing is as large as the box. The step then needs, per row, the runs of all discs from left to right:
  *
- *   1. paint     per disc, in parallel: eps of its cells from line tables (disc_area.h), and B(eps) (19).
- *   2. rows      per band of rows, in parallel: the runs of the band's rows, sorted by first cell, and their shares of B in that
+ *   1. paint     per disc, in parallel: eps of its cells from line tables (disc_area.h, area.h).
+ *   2. rows      per band of rows, in parallel: the runs of the band's rows, sorted by first cell, and their shares of B (19) in that
  *                order, so that the sweep finds them one after another. Runs that overlap share cells; there B follows from
  *                the total eps = min(1, sum eps_p), of which owner p has the share w_p B with w_p = eps_p/sum eps (22), for
  *                any number of owners. Two discs that share a cell are a candidate for contact.
@@ -33,7 +33,7 @@ struct run {
   uint32_t disc;
   int32_t row;   /* of its band */
   double rx, ry; /* from the disc's centre to the centre of the first cell */
-  size_t cell;   /* of the first cell, in the disc's tables eps[] and weight[] */
+  size_t cell;   /* of the first cell, in the disc's table eps[] */
   size_t share;  /* of the first cell, in the band's share[] */
   size_t place;  /* where place[] keeps the run's number in its band */
 };
@@ -87,10 +87,10 @@ struct occupation {
   int32_t *row;       /* of its lowest cell */
   int32_t *rows;      /* how many it covers */
   size_t *first_span; /* its spans in spans[] */
-  size_t *first_cell; /* its cells in eps[] and weight[] */
+  size_t *first_cell; /* its cells in eps[] */
   struct span *spans;
-  size_t *place;        /* [2 span + piece] the run's number in its band, or no_run */
-  double *eps, *weight; /* and B(eps) */
+  size_t *place; /* [2 span + piece] the run's number in its band, or no_run */
+  double *eps;
 
   uint32_t *order;      /* discs by x, then index */
   size_t *band_start;   /* [bands + 1] discs of band k: band_discs[band_start[k]] .. */
