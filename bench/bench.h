@@ -1,5 +1,5 @@
-/* Benchmarks: one file per question, run by `delbm bench NAME`. Each verifies what it times, prints a table and, on request, adds
- * to a JSON report. */
+/* Benchmarks: one file per question, run by `delbm bench NAME`. Each verifies what it times, prints a table and, on
+ * request, adds to a JSON report. */
 #ifndef DELBM_BENCH_BENCH_H
 #define DELBM_BENCH_BENCH_H
 
@@ -7,8 +7,8 @@
 
 #include <stdio.h>
 
-/* Where a benchmark leaves its figures. `json` is NULL unless --json was given; what is written there are the members of an
- * object of the benchmark's name. */
+/* Where a benchmark leaves its figures. `json` is NULL unless --json was given; what is written there are the members
+ * of an object of the benchmark's name. */
 struct bench_report {
   FILE *json;
   bool quick; /* less of everything: does it run, not how fast */

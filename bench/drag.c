@@ -1,5 +1,5 @@
-/* The drag of a square array of cylinders at solid fraction 0.2 (Sangani & Acrivos 1982: K = F/(mu U) = 51.53), for every form
- * of the coupling and choice of rates, over viscosity: the table of PHYSICS 2.2. */
+/* The drag of a square array of cylinders at solid fraction 0.2 (Sangani & Acrivos 1982: K = F/(mu U) = 51.53), for
+ * every form of the coupling and choice of rates, over viscosity. */
 #include "bench.h"
 #include "scenes.h"
 #include "sim/simulation.h"

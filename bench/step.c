@@ -1,5 +1,5 @@
-/* A step with discs, stage by stage, against a step of the same box without: 2500 discs of R = 5 in 1000 x 1000 (the paper's Fig. 12),
- * settling, double precision, and the same at 100,000 discs in 6400 x 6400. */
+/* A step with discs, stage by stage, against a step of the same box without: 2500 discs of R = 5 in 1000 x 1000 (the
+ * paper's Fig. 12), settling, double precision, and the same at 100,000 discs in 6400 x 6400. */
 #include "base/clock.h"
 #include "bench.h"
 #include "scenes.h"

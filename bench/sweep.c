@@ -1,7 +1,7 @@
-/* The fluid sweep alone: million cell updates a second of each kernel, in place, from one array to another (the classic scheme),
- * and blocked in time, beside a plain in-place read-modify-write of the same nine planes: the least that memory allows for
- * 18 values an update. Each is held against the reference before it is timed. Rates are medians of alternating repeats, in a
- * box that is periodic both ways. */
+/* The fluid sweep alone: million cell updates a second of each kernel, in place, from one array to another (the classic
+ * scheme), and blocked in time, beside a plain in-place read-modify-write of the same nine planes: the least that
+ * memory allows for 18 values an update. Each is held against the reference before it is timed. Rates are medians of
+ * alternating repeats, in a box that is periodic both ways. */
 #include "base/clock.h"
 #include "bench.h"
 #include "fluid/boundary.h"
@@ -54,7 +54,8 @@ static void plain_pass(const struct populations *p)
   }
 }
 
-/* Row y pulls from `from` what streams into it, and leaves it collided in `to`; the columns beside the box are images. */
+/* Row y pulls from `from` what streams into it, and leaves it collided in `to`; the columns beside the box are images.
+ * */
 static void two_arrays_step(struct subject *subject)
 {
   struct populations *from = &subject->flow.populations, *to = &subject->other;
@@ -134,8 +135,8 @@ static struct scene periodic_box(int nx, int ny, const struct sweep_kernel *kern
   return scene;
 }
 
-/* Six steps in a small box against the reference. With two arrays what is held is collided, not yet streamed, so that its
- * first step starts from the waves streamed: the reference is then one streaming behind. */
+/* Six steps in a small box against the reference. With two arrays what is held is collided, not yet streamed, so that
+ * its first step starts from the waves streamed: the reference is then one streaming behind. */
 static bool verify(const struct sweep_kernel *kernel, enum way way, const struct blocking *blocking,
                    struct status *status)
 {

@@ -138,7 +138,7 @@ Test(lens, contained_discs_overlap_wholly_and_distant_ones_not_at_all)
   cr_expect_eq(lens_of_wall(5, 6).area, 0);
 }
 
-/* (11), PHYSICS 4: alpha is what the dimensionless area over delta*^1.5 tends to. */
+/* (11): alpha is what the dimensionless area over delta*^1.5 tends to. */
 Test(lens, dimensionless_area_tends_to_the_alpha_of_the_radii)
 {
   for (double beta = 1; beta < 20; beta *= 1.3) {
@@ -184,7 +184,7 @@ static double mean_cells_area(double overlap, unsigned long seed)
 
 Test(overlap, areas_by_cells_are_on_average_those_measured_for_the_paper_s_rule)
 {
-  static const double measured[][2] = {{0.2, 0.57}, {0.5, 1.82}, {1, 4.75}}; /* PHYSICS 4, R = 10 */
+  static const double measured[][2] = {{0.2, 0.57}, {0.5, 1.82}, {1, 4.75}}; /* R = 10, means over many places */
   for (unsigned long k = 0; k < 3; k++) {
     const double mean = mean_cells_area(measured[k][0], k);
     cr_expect_float_eq(mean / measured[k][1], 1, 0.03, "overlap %g, seed %lu: %g", measured[k][0], k, mean);

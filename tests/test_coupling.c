@@ -221,8 +221,8 @@ Test(reproducibility, results_do_not_depend_on_how_steps_are_grouped)
   scene_clear(&scene);
 }
 
-/* Added mass of a cylinder: (m + m_f) a = (m - m_f) g, once sound has carried the flow around the disc and before viscosity has
- * spread: what remains is its history force, 4 % at the smallest ratio. */
+/* Added mass of a cylinder: (m + m_f) a = (m - m_f) g, once sound has carried the flow around the disc and before
+ * viscosity has spread: what remains is its history force, 4 % at the smallest ratio. */
 Test(motion, a_released_disc_starts_with_the_added_mass_of_a_cylinder)
 {
   static const double ratios[] = {0.2, 0.5, 2, 10};

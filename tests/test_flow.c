@@ -28,8 +28,8 @@ static struct scene channel(int height, double viscosity, bool along_x)
   return scene;
 }
 
-/* Half-way bounce-back shifts a force-driven parabola by (16 Lambda - 3)/12 in (H_eff/2)^2, Lambda = (1/s_nu - 1/2)(1/s_q - 1/2):
- * not at all with the magic parameter 3/16 (Ginzburg & d'Humieres 2003). */
+/* Half-way bounce-back shifts a force-driven parabola by (16 Lambda - 3)/12 in (H_eff/2)^2, Lambda = (1/s_nu -
+ * 1/2)(1/s_q - 1/2): not at all with the magic parameter 3/16 (Ginzburg & d'Humieres 2003). */
 Test(channel, poiseuille_flow_has_the_slip_of_its_magic_parameter_and_no_other_error)
 {
   static const double magics[] = {3.0 / 16, 0.05, 0.25};

@@ -508,7 +508,7 @@ static int check_shares(const struct crowd *c, int cell, unsigned long seed)
   }
   if (sum <= 0) return 0;
   const double three_nu = 3 * c->p.scene.fluid.viscosity, total = fmin(1, sum);
-  const double whole = total * three_nu / (1 - total + three_nu); /* PHYSICS (19) */
+  const double whole = total * three_nu / (1 - total + three_nu); /* (19) */
   cr_expect_float_eq(shares, whole, 1e-14, "seed %lu, cell %d: %.17g, not %.17g", seed, cell, shares, whole);
   for (int i = 0; i < CROWD; i++)
     cr_expect_float_eq(c->share[i][cell], c->eps[i][cell] / sum * whole, 1e-14, "seed %lu, cell %d, disc %d", seed,

@@ -1,4 +1,5 @@
-/* The program from outside: its contracts on command line, exit codes and files. DELBM is the path of the built program. */
+/* The program from outside: its contracts on command line, exit codes and files. DELBM is the path of the built
+ * program. */
 #include <criterion/criterion.h>
 #include <stdarg.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
-/* Eight doubles at a time: GCC's and clang's portable vectors, for loops over runs so short that their ends would cost more than
- * their middle. The compiler makes of them what the instruction set has. Included by kernels only. */
+/* Eight doubles at a time: GCC's and clang's portable vectors, for loops over runs so short that their ends would cost
+ * more than their middle. The compiler makes of them what the instruction set has. Included by kernels only. */
 #ifndef DELBM_BASE_LANES_H
 #define DELBM_BASE_LANES_H
 
@@ -24,7 +24,8 @@ static inline __attribute__((always_inline)) void lanes_store(double *to, const 
   *(lanes_in_doubles *)to = *value;
 }
 
-/* One in the first n lanes (n > 0; all if there are more), zero in the others. A product with it is cheaper than a masked load. */
+/* One in the first n lanes (n > 0; all if there are more), zero in the others. A product with it is cheaper than a
+ * masked load. */
 static inline __attribute__((always_inline)) lanes lanes_first(int n)
 {
   static const double ones_and_zeros[2 * LANES] = {1, 1, 1, 1, 1, 1, 1, 1};

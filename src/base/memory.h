@@ -15,8 +15,8 @@ void *memory_allocate(size_t count, size_t size, const char *what, struct status
 /* Grows *array to hold at least `count` elements of `size` bytes, keeping the first *capacity of them. */
 bool memory_grow(void *array, size_t *capacity, size_t count, size_t size, const char *what, struct status *status);
 
-/* Address space for large arrays, aligned to 2 MiB and advised to use huge pages. Its pages are placed by the first thread
- * that writes to them (first touch) and read as zero until then. Released by memory_unmap with the same size. */
+/* Address space for large arrays, aligned to 2 MiB and advised to use huge pages. Its pages are placed by the first
+ * thread that writes to them (first touch) and read as zero until then. Released by memory_unmap with the same size. */
 void *memory_map(size_t bytes, const char *what, struct status *status);
 void memory_unmap(void *pointer, size_t bytes);
 

@@ -1,5 +1,6 @@
-/* Errors: each is detected where it happens, carries its code, the offending value and the place in words, and is passed
- * up unchanged to be reported once. A function that can fail returns true on success; on failure it has filled *status. */
+/* Errors: each is detected where it happens, carries its code, the offending value and the place in words, and is
+ * passed up unchanged to be reported once. A function that can fail returns true on success; on failure it has filled
+ * *status. */
 #ifndef DELBM_BASE_STATUS_H
 #define DELBM_BASE_STATUS_H
 

@@ -1,8 +1,8 @@
 /* What the threads of a parallel region agree on: whether one of them has failed, and of what.
  *
- * A thread that fails says so at any time and goes on. Whether to leave is read from `stop`, which changes only inside of the
- * `single` constructs that end a stage: all threads read the same value behind that construct's barrier and leave together,
- * so that none waits at a barrier that another never reaches. */
+ * A thread that fails says so at any time and goes on. Whether to leave is read from `stop`, which changes only inside
+ * of the `single` constructs that end a stage: all threads read the same value behind that construct's barrier and
+ * leave together, so that none waits at a barrier that another never reaches. */
 #ifndef DELBM_BASE_TEAM_H
 #define DELBM_BASE_TEAM_H
 

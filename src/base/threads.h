@@ -4,8 +4,8 @@
 
 #include <stdint.h>
 
-/* As many as OpenMP offers, but none for less than 4096 cells: they would wait for each other longer than they work. Results are
- * the same with any number. */
+/* As many as OpenMP offers, but none for less than 4096 cells: they would wait for each other longer than they work.
+ * Results are the same with any number. */
 int threads_for(int64_t cells);
 
 #endif

@@ -52,8 +52,9 @@ static void print_fluid(const struct scene *scene)
     printf("  note: tau above 1.5; walls and discs lose accuracy: a smaller viscosity with smaller steps is better\n");
 }
 
-/* Speed at which a disc settles alone in unbounded fluid, from its weight and the drag of a cylinder: C_D = 8 pi/(Re ln(7.4/Re))
- * (Lamb) at small Re, and the fit 1 + 10 Re^(-2/3) of measured drag beyond Re = 1. Within a factor of two; for orientation. */
+/* Speed at which a disc settles alone in unbounded fluid, from its weight and the drag of a cylinder: C_D = 8 pi/(Re
+ * ln(7.4/Re)) (Lamb) at small Re, and the fit 1 + 10 Re^(-2/3) of measured drag beyond Re = 1. Within a factor of two;
+ * for orientation. */
 static double settling_speed(double radius, double viscosity, double weight)
 {
   double low = 0, high = 10;

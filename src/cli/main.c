@@ -84,9 +84,10 @@ static int check_stdout(int code)
   return code == DELBM_OK ? DELBM_IO : code;
 }
 
-/* OpenMP lets a waiting thread spin for long, which costs everyone dear where threads outnumber idle cores. Its runtime reads
- * the limit before main begins: unless the user has set one, set it and begin again. 500 turns are a few microseconds; measured
- * on two cores, two runs of two threads then take 3 times as long as one alone, and without a limit 10 to 40 times. */
+/* OpenMP lets a waiting thread spin for long, which costs everyone dear where threads outnumber idle cores. Its runtime
+ * reads the limit before main begins: unless the user has set one, set it and begin again. 500 turns are a few
+ * microseconds; measured on two cores, two runs of two threads then take 3 times as long as one alone, and without a
+ * limit 10 to 40 times. */
 static void limit_spinning(char **argv)
 {
   if (getenv("OMP_WAIT_POLICY") || getenv("GOMP_SPINCOUNT") || setenv("GOMP_SPINCOUNT", "500", 1) != 0) return;

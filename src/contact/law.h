@@ -21,7 +21,8 @@ static inline struct contact_law contact_law_of(const struct scene *scene)
                               .form = scene->contact.damping_form};
 }
 
-/* eta, for two bodies of inverse masses that sum to `inverse_mass` = 1/m_i + 1/m_j (zero for one that cannot give way). */
+/* eta, for two bodies of inverse masses that sum to `inverse_mass` = 1/m_i + 1/m_j (zero for one that cannot give way).
+ * */
 static inline double contact_damping(const struct contact_law *law, double inverse_mass)
 {
   if (inverse_mass <= 0) return 0;

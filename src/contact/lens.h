@@ -1,4 +1,4 @@
-/* Overlap areas in closed form (PHYSICS 4), without cancellation at small overlap. */
+/* Overlap areas in closed form, without cancellation at small overlap. */
 #ifndef DELBM_CONTACT_LENS_H
 #define DELBM_CONTACT_LENS_H
 

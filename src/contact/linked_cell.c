@@ -106,8 +106,8 @@ static int step_along(const struct linked_cell *l, int axis, int cell, int by)
   return l->periodic[axis] ? (to % n + n) % n : -1;
 }
 
-/* Half of the cells around: those above, and to the right in the same row. Where a periodic axis has too few cells to tell its
- * two sides apart a pair may be met twice; the join makes it one. */
+/* Half of the cells around: those above, and to the right in the same row. Where a periodic axis has too few cells to
+ * tell its two sides apart a pair may be met twice; the join makes it one. */
 static bool search_row(struct linked_cell *l, const struct discs *d, int y, struct status *status)
 {
   struct pair_batch *row = &l->rows[y];

@@ -1,5 +1,6 @@
-/* The pairs of discs that were found near each other, joined from the batches in which they were found. A pair that meets in
- * several rows or bands is one contact; its area by cells (23) is their sum, in the order of bands and rows. */
+/* The pairs of discs that were found near each other, joined from the batches in which they were found. A pair that
+ * meets in several rows or bands is one contact; its area by cells (23) is their sum, in the order of bands and rows.
+ * */
 #ifndef DELBM_CONTACT_OVERLAP_H
 #define DELBM_CONTACT_OVERLAP_H
 

@@ -1,6 +1,6 @@
-/* Cover: what the discs do to a row of cells, painted into row buffers just before the row is swept (populations' precision).
- * One buffer each for B and the two components of the sum over owners of w_p B v_p: a row of three, in cache, instead of three
- * planes in memory. Outside of runs they are zero, before and after. */
+/* Cover: what the discs do to a row of cells, painted into row buffers just before the row is swept (populations'
+ * precision). One buffer each for B and the two components of the sum over owners of w_p B v_p: a row of three, in
+ * cache, instead of three planes in memory. Outside of runs they are zero, before and after. */
 #ifndef DELBM_COUPLING_COVER_H
 #define DELBM_COUPLING_COVER_H
 

@@ -1,29 +1,30 @@
-/* Exchange: the momentum that fluid and discs hand each other, solved for the discs' new velocities (stage 2; PHYSICS 2.1).
+/* Exchange: the momentum that fluid and discs hand each other, solved for the discs' new velocities (stage 1 of the
+ * step).
  *
- * A cell hands the fluid B (-2 j + 2 rho v), j with the force of the step: linear in the disc's velocity. Over the cells of a disc, with b = 2 w_p B and lever
- * arm r, the streamed, not yet collided populations give
+ * A cell hands the fluid B (-2 j + 2 rho v), j with the force of the step: linear in the disc's velocity. Over the
+ * cells of a disc, with b = 2 w_p B and lever arm r, the streamed, not yet collided populations give
  *   P = sum b j, L = sum b (r x j), M0 = sum b rho, M1 = sum b rho r, M2 = sum b rho |r|^2,
  * and the change of velocity dV = (dVx, dVy, domega) over the step follows from
  *   A dV = R + J,  A = diag(m - m_f, m - m_f, I - I_f) + M,  R = weight + (P, L) - M V,
  *        | M0    0    -M1y |
  *   M =  | 0     M0    M1x |     J: impulse of all contacts of the step.
  *        | -M1y  M1x   M2  |
- * The gather stops short of J: it leaves A^-1 and A^-1 R, and contacts (sim/contact.c), however many sub-steps they take, add
- * A^-1 J. The sweep then runs with the new velocities and needs no reduction.
+ * The gather stops short of J: it leaves A^-1 and A^-1 R, and contacts (sim/contact.c), however many sub-steps they
+ * take, add A^-1 J. The sweep then runs with the new velocities and needs no reduction.
  *
- * Light discs. m_f counts all fluid inside the disc, but only M0/2 of it follows within the step; the rest, in partly covered
- * cells, follows in the time of sound. Below a density of about 1 - M0/(2 m_f), 0.1 to 0.3, a disc and what follows it at once
- * have less than no inertia, and sound between two discs, or a disc and a wall, feeds on that. So such a disc is given a held
- * mass c that makes up for it, at once, and gives it back over a few passages of sound T:
+ * Light discs. m_f counts all fluid inside the disc, but only M0/2 of it follows within the step; the rest, in partly
+ * covered cells, follows in the time of sound. Below a density of about 1 - M0/(2 m_f), 0.1 to 0.3, a disc and what
+ * follows it at once have less than no inertia, and sound between two discs, or a disc and a wall, feeds on that. So
+ * such a disc is given a held mass c that makes up for it, at once, and gives it back over a few passages of sound T:
  *   A = ... + c,  R = ... + c p/T,  p' = (1 - 1/T) p + dV.
  * A steady acceleration is what it was, since then p = T dV; conserved is (m - m_f) V + c p. Rotation likewise.
  *
- * explicit-averaged, for comparison: A = diag(m, m, I), R = weight + mean of the exchange at V over this step and the last; the
- * sweep sees V.
+ * explicit-averaged, for comparison: A = diag(m, m, I), R = weight + mean of the exchange at V over this step and the
+ * last; the sweep sees V.
  *
  * The sums are taken inside the sweep of the step before, row by row and one row behind it, while the row is in cache
- * (sim/flow.c): they cost no pass through memory. They are kept per row of each disc and added from the lowest row up, so that
- * neither the threads nor their shares of rows change a bit. */
+ * (sim/flow.c): they cost no pass through memory. They are kept per row of each disc and added from the lowest row up,
+ * so that neither the threads nor their shares of rows change a bit. */
 #ifndef DELBM_COUPLING_EXCHANGE_H
 #define DELBM_COUPLING_EXCHANGE_H
 
@@ -62,8 +63,8 @@ bool exchange_create(struct exchange *exchange, const struct scene *scene, const
                      struct status *status);
 void exchange_destroy(struct exchange *exchange);
 
-/* Adds up and solves for all discs; called by all threads of a parallel region or outside of one. `constants` are those of the
- * coming sweep. Fails when A cannot be inverted: a disc too light and too small for its cells. */
+/* Adds up and solves for all discs; called by all threads of a parallel region or outside of one. `constants` are those
+ * of the coming sweep. Fails when A cannot be inverted: a disc too light and too small for its cells. */
 void stage_exchange(struct exchange *exchange, const struct sweep_constants *constants,
                     const struct occupation *occupation, const struct discs *discs, int64_t step, struct team *team);
 

@@ -32,9 +32,9 @@ static bool ruled_by_end(const struct populations *p, const struct side side[SID
   return precedence(side[from_y < 0 ? SIDE_BOTTOM : SIDE_TOP].type) >= precedence(own->type);
 }
 
-/* The link of direction i from the ghost (gx, gy) of an outlet. What arrives is what its edge cell, the nearest in the box or the
- * periodic image of that, sends the same way: before the sweep that waits where parity 0 left it, afterwards where the cell
- * has written it. */
+/* The link of direction i from the ghost (gx, gy) of an outlet. What arrives is what its edge cell, the nearest in the
+ * box or the periodic image of that, sends the same way: before the sweep that waits where parity 0 left it, afterwards
+ * where the cell has written it. */
 static void outlet_link(struct populations *p, bool periodic_x, int i, int gx, int gy, bool before)
 {
   const int ex = d2q9_ex[i], ey = d2q9_ey[i], o = d2q9_opposite[i], nx = p->nx, ny = p->ny;
@@ -49,8 +49,8 @@ static void outlet_link(struct populations *p, bool periodic_x, int i, int gx, i
   populations_set(p, to, populations_get(p, from) - boundary_outlet_hold * d2q9_weight[i] * excess);
 }
 
-/* The links of row y to the left (inward +1) or right (inward -1) side, with the positions of x = 0 in plane 0 of the rows
- * below, at and above y: of an outlet those from the ghost beside the row, of
+/* The links of row y to the left (inward +1) or right (inward -1) side, with the positions of x = 0 in plane 0 of the
+ * rows below, at and above y: of an outlet those from the ghost beside the row, of
  * other sides those to the cell at its end. */
 static void side_links(struct populations *p, const struct side side[SIDE_COUNT], int y, const size_t row[3],
                        int inward, bool before)

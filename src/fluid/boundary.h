@@ -1,18 +1,20 @@
 /* Boundaries, as passes over the ghost ring around the steps of parity 1; with parity 0 there is nothing to do.
  *
- * A link is a cell at the edge and a population that comes from outside. In parity 1 the cell reads that population from, and
- * writes the one that leaves to, the same ghost slot G. Before its row is swept G must hold what arrives; afterwards what
- * left must be put where the next step, of parity 0, looks for what arrives.
+ * A link is a cell at the edge and a population that comes from outside. In parity 1 the cell reads that population
+ * from, and writes the one that leaves to, the same ghost slot G. Before its row is swept G must hold what arrives;
+ * afterwards what left must be put where the next step, of parity 0, looks for what arrives.
  *
- *   wall, inlet  half-way bounce-back: what left comes back with the wall's momentum (6 w rho e.u at the reference density).
+ *   wall, inlet  half-way bounce-back: what left comes back with the wall's momentum (6 w rho e.u at the reference
+ *                density).
  *   periodic     what left on the other side. In y the addresses wrap by themselves (populations.h).
- *   outlet       zero gradient along the normal: what arrives is what the edge cell itself sends inwards, but for a tenth of the
- *                cell's excess density. That holds the mean pressure, which a bare zero gradient lets drift, and is weak
- *                enough to reflect little sound.
+ *   outlet       zero gradient along the normal: what arrives is what the edge cell itself sends inwards, but for a
+ *                tenth of the cell's excess density. That holds the mean pressure, which a bare zero gradient lets
+ *                drift, and is weak enough to reflect little sound.
  *
- * Each row has passes of its own that touch only slots of that row's cells: rows may run in any order and on any thread. The
- * one exception is an outlet, whose ghosts are made from slots of other rows' cells: there all rows must be filled before any
- * is swept (boundary_fill_first). At a corner a wall wins over an inlet, that over an outlet, that over a periodic side; y wins over x among equals. */
+ * Each row has passes of its own that touch only slots of that row's cells: rows may run in any order and on any
+ * thread. The one exception is an outlet, whose ghosts are made from slots of other rows' cells: there all rows must be
+ * filled before any is swept (boundary_fill_first). At a corner a wall wins over an inlet, that over an outlet, that
+ * over a periodic side; y wins over x among equals. */
 #ifndef DELBM_FLUID_BOUNDARY_H
 #define DELBM_FLUID_BOUNDARY_H
 

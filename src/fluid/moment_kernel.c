@@ -1,7 +1,7 @@
 /* Kernels that read moments and write no populations, compiled per precision and instruction set as the sweep is.
  *
- * gather_run  moment_sums over a run of cells. Moments are formed in the precision of the populations, sums in double. A run is
- *             taken eight cells at a time; beyond its end cells are read too, with a share of zero.
+ * gather_run  moment_sums over a run of cells. Moments are formed in the precision of the populations, sums in double.
+ *             A run is taken eight cells at a time; beyond its end cells are read too, with a share of zero.
  * paint_run   adds a run to the row's cover (sweep.h), likewise.
  * scan_row    the largest speed of a row. What is not finite may escape a maximum, but not the sum formed beside it. */
 #include "base/lanes.h"

@@ -2,18 +2,18 @@
  *
  * A step collides a cell and streams the result without a second array (the AA pattern). Two kinds of step alternate:
  *
- *   parity 0   plane i at x holds f_i(x), already streamed. The step reads f_i from plane i at x and leaves the collided
- *              f_i* in plane opposite(i) at x: it touches only its own cell.
- *   parity 1   f_i(x) therefore waits in plane opposite(i) at x - e_i. The step reads it there and writes f_i* to plane i at
- *              x + e_i, where parity 0 looks for it.
+ *   parity 0   plane i at x holds f_i(x), already streamed. The step reads f_i from plane i at x and leaves the
+ *              collided f_i* in plane opposite(i) at x: it touches only its own cell.
+ *   parity 1   f_i(x) therefore waits in plane opposite(i) at x - e_i. The step reads it there and writes f_i* to plane
+ *              i at x + e_i, where parity 0 looks for it.
  *
- * With a_i the address from which cell x reads f_i, both kinds write f_i* to a_opposite(i): one kernel serves them, given
- * nine addresses. The nine slots of a cell belong to it alone in either parity, so cells may be updated in any order and
- * by any thread without a race.
+ * With a_i the address from which cell x reads f_i, both kinds write f_i* to a_opposite(i): one kernel serves them,
+ * given nine addresses. The nine slots of a cell belong to it alone in either parity, so cells may be updated in any
+ * order and by any thread without a race.
  *
  * A plane is ny + 2 rows of `pitch` values: a ring of ghost cells surrounds the box, x = 0 starts on a cache line, and
- * planes are skewed so that nine of them never compete for one cache set. Where y is periodic the row below the first is
- * the last, by address alone. */
+ * planes are skewed so that nine of them never compete for one cache set. Where y is periodic the row below the first
+ * is the last, by address alone. */
 #ifndef DELBM_FLUID_POPULATIONS_H
 #define DELBM_FLUID_POPULATIONS_H
 

@@ -1,5 +1,5 @@
-/* The step written as the paper writes it, cell by cell and slowly: two arrays of whole populations, the moment matrix, the
- * source cell of every population looked up. Every fast kernel is held against it. */
+/* The step written as the paper writes it, cell by cell and slowly: two arrays of whole populations, the moment matrix,
+ * the source cell of every population looked up. Every fast kernel is held against it. */
 #ifndef DELBM_FLUID_REFERENCE_H
 #define DELBM_FLUID_REFERENCE_H
 

@@ -1,7 +1,8 @@
 /* The sweep: collide, immersed moving boundary and stream of one row at a time, in place (see populations.h).
  *
- * A kernel is one body (sweep_kernel.c) compiled per precision and instruction set; literal arguments make its forms: fluid
- * alone or with discs (unified or owen), each with or without a body force. sweep_find chooses one at start-up. */
+ * A kernel is one body (sweep_kernel.c) compiled per precision and instruction set; literal arguments make its forms:
+ * fluid alone or with discs (unified or owen), each with or without a body force. sweep_find chooses one at start-up.
+ * */
 #ifndef DELBM_FLUID_SWEEP_H
 #define DELBM_FLUID_SWEEP_H
 
@@ -21,20 +22,20 @@ struct row_cover {
   void *b, *bvx, *bvy;
 };
 
-/* Updates n cells whose populations are read from a[i][0..n-1]. `cover` is NULL for fluid alone. With a force, sum[] takes
- * the momentum of the updated cells; without, it is left alone. */
+/* Updates n cells whose populations are read from a[i][0..n-1]. `cover` is NULL for fluid alone. With a force, sum[]
+ * takes the momentum of the updated cells; without, it is left alone. */
 typedef void sweep_row(void *const a[Q], int n, const struct sweep_constants *constants, const struct row_cover *cover,
                        double sum[2]);
 
 /* The same for fluid alone without force, from one set of addresses to another. */
 typedef void sweep_row_between(void *const from[Q], void *const to[Q], int n, const struct sweep_constants *constants);
 
-/* Sums over n cells, read from a[i][0..n-1], the first of them rx to the right of the disc's centre. Up to seven elements past the
- * end of the populations and of share[] are read. */
+/* Sums over n cells, read from a[i][0..n-1], the first of them rx to the right of the disc's centre. Up to seven
+ * elements past the end of the populations and of share[] are read. */
 typedef void gather_run(void *const a[Q], int n, const double *share, double rx, struct moment_sums *sums);
 
-/* Adds n cells from x on to a row's cover: the solid moves at (vx, vy) in the first, at vy + k omega in the k-th after it. Up to
- * seven elements past the end are read and written back as they were. */
+/* Adds n cells from x on to a row's cover: the solid moves at (vx, vy) in the first, at vy + k omega in the k-th after
+ * it. Up to seven elements past the end are read and written back as they were. */
 typedef void paint_run(const struct row_cover *row, int x, int n, const double *share, double vx, double vy,
                        double omega);
 

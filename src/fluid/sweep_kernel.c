@@ -8,17 +8,18 @@
  *   S = s1+s2, D = s5+s6, pxx = s1-s2, pxy = s5-s6, tx = d5-d6 = (2 jx + qx)/3, ty = d5+d6 = (2 jy + qy)/3.
  *
  * e and eps relax at one rate, so any combination of them does: S to 4 rho/9 + u.j/3 and D to rho/9 + u.j/3. tx relaxes
- * to jx/3 at the rate of qx. What is added to each population is built from the changes of S, D, pxx, pxy, jx, tx, jy, ty;
- * f0 takes what S and D give up, so that mass is kept to round-off.
+ * to jx/3 at the rate of qx. What is added to each population is built from the changes of S, D, pxx, pxy, jx, tx, jy,
+ * ty; f0 takes what S and D give up, so that mass is kept to round-off.
  *
  * Force: second order in time (Guo, Zheng & Shi 2002) with F = rho g + uniform; even
  * equilibria see j + F/2, and odd moments, where the two half forces cancel, gain F and F/3.
  *
- * Immersed boundary: bounce-back changes the sign of odd moments only, and 6 w rho e.v adds 2 rho v to j and 2 rho v/3 to t.
+ * Immersed boundary: bounce-back changes the sign of odd moments only, and 6 w rho e.v adds 2 rho v to j and 2 rho v/3
+ * to t.
  *   owen    (12)-(13): rates times (1 - B), reflection of the moments before collision;
  *   unified (17)-(18): full rates, reflection of the moments after collision.
- * Either way j gains exactly 2 (rho B v - B (j + F)): what is reflected has felt the force, so that fluid inside a disc keeps
- * the disc's velocity exactly, (j + F/2)/rho = v. */
+ * Either way j gains exactly 2 (rho B v - B (j + F)): what is reflected has felt the force, so that fluid inside a disc
+ * keeps the disc's velocity exactly, (j + F/2)/rho = v. */
 #include "fluid/sweep.h"
 
 #define PASTE3(a, b, c) a##_##b##_##c

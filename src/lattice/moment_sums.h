@@ -1,6 +1,6 @@
-/* Sums over a run of cells of one disc (PHYSICS 2.1): with share s = w_p B, r the lever arm along the row and the moments of the
- * populations about to be collided. The force of the step, F = rho g + uniform, is not in them, since they are taken before
- * it is known; with sum s and sum s r they are all that it needs. One cache line. */
+/* Sums over a run of cells of one disc (exchange.h): with share s = w_p B, r the lever arm along the row and the
+ * moments of the populations about to be collided. The force of the step, F = rho g + uniform, is not in them, since
+ * they are taken before it is known; with sum s and sum s r they are all that it needs. One cache line. */
 #ifndef DELBM_LATTICE_MOMENT_SUMS_H
 #define DELBM_LATTICE_MOMENT_SUMS_H
 

@@ -53,7 +53,7 @@ struct fill_spec {
   uint64_t seed;
 };
 
-/* The rates of the one collision kernel (PHYSICS of the paper's (3): s_e = s_eps, s_q, s_nu). */
+/* The rates of the one collision kernel (of the paper's (3): s_e = s_eps, s_q, s_nu). */
 struct rates {
   double nu; /* of pxx and pxy: 1/(3 viscosity + 1/2) */
   double e;  /* of e and eps */
@@ -126,8 +126,8 @@ struct scene {
 /* Releases what the scene holds (not the struct itself). */
 void scene_clear(struct scene *scene);
 
-/* Appends the discs of particles.fill to the listed ones, drawing the displacements from GSL's generator mt19937 with the
- * case's seed: row by row from the lower left, x before y. */
+/* Appends the discs of particles.fill to the listed ones, drawing the displacements from GSL's generator mt19937 with
+ * the case's seed: row by row from the lower left, x before y. */
 bool scene_fill(struct scene *scene, struct status *status);
 
 /* Relaxation rate of the stress for a kinematic viscosity. */

@@ -1,15 +1,16 @@
 /* The sweep blocked in time: several steps of a scene without discs in one pass through memory.
  *
- * A row may take step s once it and its two neighbours have taken step s - 1 (populations.h: a step touches no further). So a
- * wavefront can pass over the rows in which each step follows one row behind the last, and a row comes from memory once for
- * `depth` steps. Rows are cut into tiles of `width` cells, each step shifted one cell to the left of the last, so that
- * what a wavefront holds at once (depth + 2 rows of a tile) stays in the nearest cache. Where x is periodic the first tile
- * retreats by a cell each step from the left side and the last one makes that up beyond the right.
+ * A row may take step s once it and its two neighbours have taken step s - 1 (populations.h: a step touches no
+ * further). So a wavefront can pass over the rows in which each step follows one row behind the last, and a row comes
+ * from memory once for `depth` steps. Rows are cut into tiles of `width` cells, each step shifted one cell to the left
+ * of the last, so that what a wavefront holds at once (depth + 2 rows of a tile) stays in the nearest cache. Where x is
+ * periodic the first tile retreats by a cell each step from the left side and the last one makes that up beyond the
+ * right.
  *
- * Threads take slabs of rows. Within a block a slab retreats by a row each step from slabs beside it (not from walls); when all
- * have finished, what is missing around each border, a triangle that grows by a row each step, is made up. Every row
- * takes every step once, with the same arithmetic as unblocked: the results are the same bits for any depth, width and
- * number of threads. */
+ * Threads take slabs of rows. Within a block a slab retreats by a row each step from slabs beside it (not from walls);
+ * when all have finished, what is missing around each border, a triangle that grows by a row each step, is made up.
+ * Every row takes every step once, with the same arithmetic as unblocked: the results are the same bits for any depth,
+ * width and number of threads. */
 #ifndef DELBM_SIM_BLOCKED_H
 #define DELBM_SIM_BLOCKED_H
 

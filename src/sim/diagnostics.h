@@ -1,5 +1,5 @@
-/* Looks at the state: mass, momentum, the fastest cell, what is not finite. Sums are taken per row, the rows added in order: the
- * same bits for any number of threads. */
+/* Looks at the state: mass, momentum, the fastest cell, what is not finite. Sums are taken per row, the rows added in
+ * order: the same bits for any number of threads. */
 #ifndef DELBM_SIM_DIAGNOSTICS_H
 #define DELBM_SIM_DIAGNOSTICS_H
 
@@ -20,12 +20,14 @@ struct worst_cell {
   int x, y;
 };
 
-/* Both read the populations that the coming step will collide; with parity 1 ghosts are filled first. Outside of parallel regions. */
+/* Both read the populations that the coming step will collide; with parity 1 ghosts are filled first. Outside of
+ * parallel regions. */
 struct fluid_totals diagnostics_totals(struct populations *populations, const struct side side[SIDE_COUNT]);
 struct worst_cell diagnostics_worst(struct populations *populations, scan_row *scan,
                                     const struct side side[SIDE_COUNT]);
 
-/* Density and velocity (j + F/2)/rho, F = rho force + uniform, of every cell into arrays of nx * ny; any may be NULL. */
+/* Density and velocity (j + F/2)/rho, F = rho force + uniform, of every cell into arrays of nx * ny; any may be NULL.
+ * */
 void diagnostics_fields(struct populations *populations, const struct side side[SIDE_COUNT], const double force[2],
                         const double uniform[2], double *density, double *ux, double *uy);
 

@@ -96,7 +96,7 @@ static void sweep_row_at(struct flow *f, int y, const struct sweep_discs *discs)
   cover_clear(cover, runs, count);
 }
 
-/* The uniform force that cancels the mean momentum that this step leaves, along the axes that walls close (PHYSICS 2.3). */
+/* The uniform force that cancels the mean momentum that this step leaves, along the axes that walls close. */
 static void cancel_flux(struct flow *f)
 {
   double sum[2] = {0, 0};

@@ -1,5 +1,6 @@
-/* The sweep over all cells (stage 4 of the step), and the boundary pass before it. Rows are shared out in order and without
- * branches per cell: rows that no disc touches take the kernel without discs. A step of parity 0 needs no boundary at all. */
+/* The sweep over all cells (stage 4 of the step), and the boundary pass before it. Rows are shared out in order and
+ * without branches per cell: rows that no disc touches take the kernel without discs. A step of parity 0 needs no
+ * boundary at all. */
 #ifndef DELBM_SIM_FLOW_H
 #define DELBM_SIM_FLOW_H
 
@@ -20,8 +21,8 @@ struct flow {
 bool flow_create(struct flow *flow, const struct scene *scene, const struct plan *plan, struct status *status);
 void flow_destroy(struct flow *flow);
 
-/* The initial state: fluid at rest, (j + F/2)/rho = 0, and inside discs moving with them. Fluid that started out of step with its
- * disc would be reflected to and fro about its velocity, for ever in the owen form. */
+/* The initial state: fluid at rest, (j + F/2)/rho = 0, and inside discs moving with them. Fluid that started out of
+ * step with its disc would be reflected to and fro about its velocity, for ever in the owen form. */
 void flow_start(struct flow *flow, const struct occupation *occupation, const struct discs *discs);
 
 /* Prepares for a parallel region of `threads`. */
@@ -39,8 +40,8 @@ struct sweep_discs {
  * stage_boundary fills the ghosts of all rows before a sweep of parity 1, where boundary_fill_first says so. */
 void stage_boundary(struct flow *flow);
 
-/* The sweep. With discs each row's moments are taken for the next exchange once the row and its neighbours are done, which also
- * fills the row's ghosts if the next step needs them. Ends with the next step's parity and uniform force. */
+/* The sweep. With discs each row's moments are taken for the next exchange once the row and its neighbours are done,
+ * which also fills the row's ghosts if the next step needs them. Ends with the next step's parity and uniform force. */
 void stage_sweep(struct flow *flow, bool ghosts_filled, const struct sweep_discs *discs);
 
 /* The sums of the first exchange, which no sweep precedes. */

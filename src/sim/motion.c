@@ -182,9 +182,9 @@ static void push(struct motion *m, uint32_t i, double fx, double fy)
   t->fy += fy;
 }
 
-/* One sub-step of length h: forces at the trial places, then velocities, then places: a leapfrog, whose velocities lie half a
- * sub-step before its places. The kick therefore lasts from the middle of the last sub-step to the middle of this one; a
- * kick of h where h changes would gain energy. */
+/* One sub-step of length h: forces at the trial places, then velocities, then places: a leapfrog, whose velocities lie
+ * half a sub-step before its places. The kick therefore lasts from the middle of the last sub-step to the middle of
+ * this one; a kick of h where h changes would gain energy. */
 static void substep(struct motion *m, const struct exchange *e, struct discs *d, double h)
 {
   const double kick = 0.5 * (m->last_substep + h);

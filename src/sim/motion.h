@@ -1,13 +1,14 @@
-/* Contacts and motion (stage 3 of the step): the forces of the pairs that occupation found and of the sides, the discs' new
- * velocities, their new places.
+/* Contacts and motion (stage 3 of the step): the forces of the pairs that occupation found and of the sides, the discs'
+ * new velocities, their new places.
  *
- * The exchange has left each disc's response A^-1 and its change of velocity without contacts. Contacts add A^-1 J, with J
- * their impulse over the step. Stiff ones are followed in n sub-steps: within the step a disc accelerates at a constant rate
- * but for contacts, whose lens areas are exact, so that the last sub-step ends at the very velocity that the solve gives for the
- * impulse handed to it. n follows from the stiffest contact of the step; with n = 1 this is x' = x + V'.
+ * The exchange has left each disc's response A^-1 and its change of velocity without contacts. Contacts add A^-1 J,
+ * with J their impulse over the step. Stiff ones are followed in n sub-steps: within the step a disc accelerates at a
+ * constant rate but for contacts, whose lens areas are exact, so that the last sub-step ends at the very velocity that
+ * the solve gives for the impulse handed to it. n follows from the stiffest contact of the step; with n = 1 this is x'
+ * = x + V'.
  *
- * One thread follows the contacts, in the order of the list; all of them finish the discs, each its own. Sides that are not
- * periodic act on discs as walls, so that none leaves the box. */
+ * One thread follows the contacts, in the order of the list; all of them finish the discs, each its own. Sides that are
+ * not periodic act on discs as walls, so that none leaves the box. */
 #ifndef DELBM_SIM_MOTION_H
 #define DELBM_SIM_MOTION_H
 
@@ -51,8 +52,8 @@ bool motion_create(struct motion *motion, const struct scene *scene, const struc
                    struct status *status);
 void motion_destroy(struct motion *motion);
 
-/* The stage; called by all threads of a parallel region or outside of one. Fails when a disc's speed is not finite or above Mach
- * 0.6, or when memory runs out. */
+/* The stage; called by all threads of a parallel region or outside of one. Fails when a disc's speed is not finite or
+ * above Mach 0.6, or when memory runs out. */
 void stage_contact(struct motion *motion, const struct occupation *occupation, struct exchange *exchange,
                    struct discs *discs, int64_t step, struct team *team);
 

@@ -18,7 +18,8 @@ struct plan {
 
 struct plan plan_of(const struct scene *scene);
 
-/* Sub-steps that a contact of this stiffness (force per overlap distance), damping and inverse mass of relative motion needs. */
+/* Sub-steps that a contact of this stiffness (force per overlap distance), damping and inverse mass of relative motion
+ * needs. */
 int plan_substeps(const struct scene *scene, double stiffness, double damping, double inverse_mass);
 
 /* The most sub-steps that any two of the scene's discs would take at an overlap of one cell. */

@@ -109,9 +109,9 @@ static void charge(struct simulation *s, enum stage stage, double *since)
   }
 }
 
-/* One step, by all threads of the parallel region. The exchange precedes the contacts so that these, and their sub-steps, act
- * through the same response as the fluid does; and discs are painted where they have just moved before the sweep, so that the
- * sweep can take the sums of the next exchange. */
+/* One step, by all threads of the parallel region. The exchange precedes the contacts so that these, and their
+ * sub-steps, act through the same response as the fluid does; and discs are painted where they have just moved before
+ * the sweep, so that the sweep can take the sums of the next exchange. */
 static void step(struct simulation *s, double *since)
 {
   struct sweep_discs discs = {0};

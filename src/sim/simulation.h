@@ -1,5 +1,5 @@
-/* The simulation: a scene set in motion. One step is four stages, each one function (occupation, exchange, contact, sweep),
- * run by all threads of one parallel region that spans many steps. */
+/* The simulation: a scene set in motion. One step is four stages, each one function (occupation, exchange, contact,
+ * sweep), run by all threads of one parallel region that spans many steps. */
 #ifndef DELBM_SIM_SIMULATION_H
 #define DELBM_SIM_SIMULATION_H
 
@@ -14,8 +14,8 @@ struct simulation;
 bool simulation_create(struct simulation **simulation, const struct scene *scene, struct status *status);
 void simulation_destroy(struct simulation *simulation);
 
-/* Advances by `steps` steps. Fails (DELBM_FAILED) when the run has diverged: a value that is not finite, or a Mach number
- * above 0.6, found at the latest run.check steps after it arose; the message says which, where and when. */
+/* Advances by `steps` steps. Fails (DELBM_FAILED) when the run has diverged: a value that is not finite, or a Mach
+ * number above 0.6, found at the latest run.check steps after it arose; the message says which, where and when. */
 bool simulation_advance(struct simulation *simulation, int64_t steps, struct status *status);
 
 /* Looks for divergence now. To be called before anything is written, so that no file holds a NaN. */

@@ -1,6 +1,6 @@
-/* The choice of blocking (blocked.h) by measurement: what FFTW calls a plan. The first blocks of a run are its trials, each with
- * another depth and width; every block does real steps, and all give the same results, so that nothing is lost and nothing
- * depends on the choice but time. A case fixes it by run.plan. */
+/* The choice of blocking (blocked.h) by measurement: what FFTW calls a plan. The first blocks of a run are its trials,
+ * each with another depth and width; every block does real steps, and all give the same results, so that nothing is
+ * lost and nothing depends on the choice but time. A case fixes it by run.plan. */
 #ifndef DELBM_SIM_TUNING_H
 #define DELBM_SIM_TUNING_H
 

@@ -1,4 +1,5 @@
-/* Areas by line tables, in plain loops that vectorise; trip counts are whole vectors, so that none ends in a remainder. */
+/* Areas by line tables, in plain loops that vectorise; trip counts are whole vectors, so that none ends in a remainder.
+ * */
 #include "solid/area.h"
 
 #include <math.h>
@@ -15,7 +16,8 @@ static inline int whole_vectors(int n)
   return (n + VECTOR - 1) / VECTOR * VECTOR;
 }
 
-/* (asin(s) - s)/s^3 as a polynomial in z = s^2 <= 1/4: interpolated at Chebyshev points from the series, error 2e-17. */
+/* (asin(s) - s)/s^3 as a polynomial in z = s^2 <= 1/4: interpolated at Chebyshev points from the series, error 2e-17.
+ * */
 static inline double arcsine_rest(double z)
 {
   double p = 0.028757851367421566;

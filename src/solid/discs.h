@@ -1,5 +1,5 @@
-/* The discs: one array per quantity, indexed by disc. Lattice units; angles counter-clockwise. The reference density of the
- * fluid is 1, so that fluid_mass = pi R^2 is the mass of the fluid that would fill the disc. */
+/* The discs: one array per quantity, indexed by disc. Lattice units; angles counter-clockwise. The reference density of
+ * the fluid is 1, so that fluid_mass = pi R^2 is the mass of the fluid that would fill the disc. */
 #ifndef DELBM_SOLID_DISCS_H
 #define DELBM_SOLID_DISCS_H
 
@@ -13,7 +13,7 @@ struct discs {
   uint8_t *motion;                 /* enum disc_motion */
   double *x, *y, *angle;           /* centre (inside the box where it is periodic), rotation since the start */
   double *vx, *vy, *omega;
-  double *fx, *fy, *torque;                         /* of the fluid on the solid, last step (PHYSICS 2.1) */
+  double *fx, *fy, *torque;                         /* of the fluid on the solid, last step (exchange.h) */
   double *contact_fx, *contact_fy, *contact_torque; /* of discs and walls on the disc, last step */
   size_t moving;                                    /* how many are not fixed */
   size_t free;                                      /* how many move by the forces on them */

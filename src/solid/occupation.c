@@ -15,7 +15,8 @@ static size_t most_lines(double radius)
   return (size_t)ceil(2 * radius) + 2;
 }
 
-/* Cells that a disc can touch: those within half a cell's diagonal, and one more all round; and what the kernel pads. */
+/* Cells that a disc can touch: those within half a cell's diagonal, and one more all round; and what the kernel pads.
+ * */
 static size_t most_cells(double radius)
 {
   return (size_t)ceil(M_PI * (radius + 1.5) * (radius + 1.5)) + AREA_PAD;
@@ -118,8 +119,8 @@ static bool lines_prepare(struct lines *l, size_t count, struct status *status)
   return true;
 }
 
-/* Where a row's run begins and ends, and within it the cells whose corners all lie inside the disc. Columns count from the one
- * whose line lies at distance `left` from the centre. */
+/* Where a row's run begins and ends, and within it the cells whose corners all lie inside the disc. Columns count from
+ * the one whose line lies at distance `left` from the centre. */
 struct extent {
   int first, end, full, full_end;
 };
@@ -223,7 +224,8 @@ static bool sort_from_scratch(struct occupation *o, struct status *status)
   return true;
 }
 
-/* Calls for the bands that the disc's rows (and reach) lie in: sets first..last, unwrapped; returns false if there are none. */
+/* Calls for the bands that the disc's rows (and reach) lie in: sets first..last, unwrapped; returns false if there are
+ * none. */
 static bool disc_bands(const struct occupation *o, size_t disc, int *first, int *last)
 {
   int low = o->row[disc] - o->reach, high = o->row[disc] + o->rows[disc] - 1 + o->reach;
@@ -294,7 +296,8 @@ static void reach_columns(const struct occupation *o, size_t disc, int k, int *f
   }
 }
 
-/* One piece of a run: columns moved by `shift` into the box and cut to it. False if nothing of it, nor its reach, is inside. */
+/* One piece of a run: columns moved by `shift` into the box and cut to it. False if nothing of it, nor its reach, is
+ * inside. */
 static bool cut_run(const struct occupation *o, struct run *run, int shift, int first, int count, int reach_first,
                     int reach_end)
 {
@@ -398,8 +401,8 @@ static bool collect_runs(struct occupation *o, int index, struct status *status)
   return true;
 }
 
-/* Lays out the shares of a band's runs, as if each cell had one owner, and room for their sums. What a kernel writes past the end
- * of a run is overwritten by the next. */
+/* Lays out the shares of a band's runs, as if each cell had one owner, and room for their sums. What a kernel writes
+ * past the end of a run is overwritten by the next. */
 static bool lay_out_shares(struct occupation *o, struct band *band, struct status *status)
 {
   size_t cells = 0;

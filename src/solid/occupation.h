@@ -1,17 +1,19 @@
 /* Occupation: which cells each disc covers, and how much of them (stage 1 of the step).
  *
- * A disc is convex, so it covers one run of cells in each row. Its occupation fractions eps lie in a table of its own, run after
- * run; nothing is as large as the box. The step then needs, per row, the runs of all discs from left to right:
+ * A disc is convex, so it covers one run of cells in each row. Its occupation fractions eps lie in a table of its own,
+ * run after run; nothing is as large as the box. The step then needs, per row, the runs of all discs from left to
+ * right:
  *
  *   1. paint     per disc, in parallel: eps of its cells from line tables (disc_area.h, area.h).
- *   2. rows      per band of rows, in parallel: the runs of the band's rows, sorted by first cell, and their shares of B (19) in that
- *                order, so that the sweep finds them one after another. Runs that overlap share cells; there B follows from
- *                the total eps = min(1, sum eps_p), of which owner p has the share w_p B with w_p = eps_p/sum eps (22), for
- *                any number of owners. Two discs that share a cell are a candidate for contact.
+ *   2. rows      per band of rows, in parallel: the runs of the band's rows, sorted by first cell, and their shares of
+ *                B (19) in that order, so that the sweep finds them one after another. Runs that overlap share cells;
+ *                there B follows from the total eps = min(1, sum eps_p), of which owner p has the share w_p B with
+ *                w_p = eps_p/sum eps (22), for any number of owners. Two discs that share a cell are a candidate for
+ *                contact.
  *
- * A band's runs, and the shares of cells in its rows, are written by the one thread that has the band: no races. All orders
- * (discs along x, runs in a row, owners of a cell, bands) follow from positions and indices alone, never from threads or
- * history: results are the same for any number of threads and after a restart.
+ * A band's runs, and the shares of cells in its rows, are written by the one thread that has the band: no races. All
+ * orders (discs along x, runs in a row, owners of a cell, bands) follow from positions and indices alone, never from
+ * threads or history: results are the same for any number of threads and after a restart.
  *
  * Discs may reach beyond walls (their runs are cut there) and across periodic sides (their runs wrap). */
 #ifndef DELBM_SOLID_OCCUPATION_H
@@ -25,8 +27,8 @@ enum { BAND_ROWS = 16 };
 
 struct area_kernel;
 
-/* Cells of one disc in one row of the box, wrapped and cut: x .. x + n - 1. Runs without cells (n = 0) only announce that the
- * disc is within reach. */
+/* Cells of one disc in one row of the box, wrapped and cut: x .. x + n - 1. Runs without cells (n = 0) only announce
+ * that the disc is within reach. */
 struct run {
   int32_t x, n;
   int32_t reach_first, reach_end; /* cells that make discs candidates: the run's own, widened by the reach */
@@ -109,8 +111,8 @@ void occupation_destroy(struct occupation *occupation);
 /* Bytes that occupation_create would take. */
 double occupation_bytes(const struct scene *scene);
 
-/* The stage, called by all threads of a parallel region or outside of one. Discs that have not moved since they were painted are
- * not painted again. Fails if memory runs out. */
+/* The stage, called by all threads of a parallel region or outside of one. Discs that have not moved since they were
+ * painted are not painted again. Fails if memory runs out. */
 void stage_occupation(struct occupation *occupation, const struct discs *discs, struct team *team);
 
 static const size_t no_run = SIZE_MAX;
@@ -141,7 +143,8 @@ static inline const struct moment_sums *occupation_sums(const struct occupation 
   return place == no_run || row < 0 || row >= ny ? NULL : &occupation_band(o, row)->sums[place];
 }
 
-/* Cuts span `s` (of the disc's row number k) to the box: at most two runs, and none where the row lies outside. Returns how many. */
+/* Cuts span `s` (of the disc's row number k) to the box: at most two runs, and none where the row lies outside. Returns
+ * how many. */
 int occupation_runs(const struct occupation *o, size_t disc, int k, struct run runs[2], int *y);
 
 /* B of a cell with occupation fraction eps (19). */
