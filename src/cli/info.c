@@ -153,7 +153,8 @@ static void print_memory(const struct scene *scene)
 {
   const double cells = (double)scene->domain.size[0] * scene->domain.size[1];
   const double fluid = (double)populations_bytes(scene->domain.size[0], scene->domain.size[1], scene->fluid.precision);
-  const double discs = occupation_bytes(scene);
+  const bool moving = plan_of(scene).occupation == OCCUPATION_EVERY_STEP;
+  const double discs = (moving ? 2 : 1) * occupation_bytes(scene); /* of the present step and the next */
   printf("memory       fluid %.4g MiB (%.1f bytes a cell)", fluid / (1 << 20), fluid / cells);
   if (scene->particles.count > 0)
     printf(", discs %.4g MiB (%.0f bytes a disc)", discs / (1 << 20), discs / (double)scene->particles.count);

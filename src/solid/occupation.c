@@ -24,12 +24,12 @@ static size_t most_cells(double radius)
 
 double occupation_bytes(const struct scene *scene)
 {
+  const size_t row = sizeof(struct span) + 2 * sizeof(struct run) + sizeof(struct moment_sums) + 2 * sizeof(size_t);
+  const size_t disc = 2 * sizeof(double) + 3 * sizeof(int32_t) + 2 * sizeof(size_t) + 2 * sizeof(uint32_t);
   double bytes = 0;
   for (size_t i = 0; i < scene->particles.count; i++) {
     const double radius = scene->particles.discs[i].radius;
-    bytes += (double)most_cells(radius) * 2 * sizeof(double); /* eps, shares */
-    bytes += (double)most_lines(radius) * (sizeof(struct span) + sizeof(struct run));
-    bytes += 2 * sizeof(double) + 3 * sizeof(int32_t) + 2 * sizeof(size_t) + 2 * sizeof(uint32_t);
+    bytes += (double)(most_cells(radius) * 2 * sizeof(double) + most_lines(radius) * row + disc); /* eps and shares */
   }
   return bytes;
 }
