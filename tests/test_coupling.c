@@ -1,4 +1,5 @@
 /* Fluid and discs together: what is conserved, what is stable, how discs start and settle. */
+#include "drive.h"
 #include "scenes.h"
 #include "sim/simulation.h"
 #include "solid/occupation.h"
@@ -8,20 +9,6 @@
 #include <math.h>
 #include <omp.h>
 #include <stdlib.h>
-
-static struct simulation *start(const struct scene *scene)
-{
-  struct simulation *simulation;
-  struct status status;
-  cr_assert(simulation_create(&simulation, scene, &status), "%s", status.message);
-  return simulation;
-}
-
-static void advance(struct simulation *simulation, int64_t steps)
-{
-  struct status status;
-  cr_assert(simulation_advance(simulation, steps, &status), "%s", status.message);
-}
 
 static struct simulation_report report_of(struct simulation *simulation)
 {

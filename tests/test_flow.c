@@ -1,24 +1,11 @@
 /* Flows with exact solutions: channels, moving walls, ducts, and the drag of a square array of cylinders. */
+#include "drive.h"
 #include "scenes.h"
 #include "sim/simulation.h"
 
 #include <criterion/criterion.h>
 #include <math.h>
 #include <stdlib.h>
-
-static struct simulation *start(const struct scene *scene)
-{
-  struct simulation *simulation;
-  struct status status;
-  cr_assert(simulation_create(&simulation, scene, &status), "%s", status.message);
-  return simulation;
-}
-
-static void advance(struct simulation *simulation, int64_t steps)
-{
-  struct status status;
-  cr_assert(simulation_advance(simulation, steps, &status), "%s", status.message);
-}
 
 static struct scene channel(int height, double viscosity, bool along_x)
 {

@@ -6,7 +6,6 @@
 enum { LANES = 8 };
 
 typedef double lanes __attribute__((vector_size(64)));
-typedef long long lane_mask __attribute__((vector_size(64))); /* all bits of a lane set, or none */
 
 /* Elements in memory, at any address. */
 typedef double lanes_in_doubles __attribute__((vector_size(64), aligned(8), may_alias));
@@ -19,22 +18,11 @@ static inline __attribute__((always_inline)) lanes lanes_load(const double *from
   return *(const lanes_in_doubles *)from;
 }
 
-static inline __attribute__((always_inline)) void lanes_store(double *to, const lanes *value)
-{
-  *(lanes_in_doubles *)to = *value;
-}
-
-/* One in the first n lanes (n > 0; all if there are more), zero in the others. A product with it is cheaper than a
- * masked load. */
+/* One in the first n lanes (n > 0; all if there are more), zero in the others. */
 static inline __attribute__((always_inline)) lanes lanes_first(int n)
 {
   static const double ones_and_zeros[2 * LANES] = {1, 1, 1, 1, 1, 1, 1, 1};
   return lanes_load(ones_and_zeros + (n < LANES ? LANES - n : 0));
-}
-
-static inline __attribute__((always_inline)) lanes lanes_select(lane_mask where, lanes yes, lanes no)
-{
-  return (lanes)(((lane_mask)yes & where) | ((lane_mask)no & ~where));
 }
 
 /* The sum of all lanes, pairwise. */

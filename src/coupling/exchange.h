@@ -1,5 +1,4 @@
-/* Exchange: the momentum that fluid and discs hand each other, solved for the discs' new velocities (stage 1 of the
- * step).
+/* Exchange: the momentum that fluid and discs hand each other, solved for the discs' new velocities.
  *
  * A cell hands the fluid B (-2 j + 2 rho v), j with the force of the step: linear in the disc's velocity. Over the
  * cells of a disc, with b = 2 w_p B and lever arm r, the streamed, not yet collided populations give
@@ -9,7 +8,7 @@
  *        | M0    0    -M1y |
  *   M =  | 0     M0    M1x |     J: impulse of all contacts of the step.
  *        | -M1y  M1x   M2  |
- * The gather stops short of J: it leaves A^-1 and A^-1 R, and contacts (sim/contact.c), however many sub-steps they
+ * The gather stops short of J: it leaves A^-1 and A^-1 R, and contacts (sim/motion.c), however many sub-steps they
  * take, add A^-1 J. The sweep then runs with the new velocities and needs no reduction.
  *
  * Light discs. m_f counts all fluid inside the disc, but only M0/2 of it follows within the step; the rest, in partly

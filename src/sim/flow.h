@@ -1,4 +1,4 @@
-/* The sweep over all cells (stage 4 of the step), and the boundary pass before it. Rows are shared out in order and
+/* The sweep over all cells, and the boundary pass before it. Rows are shared out in order and
  * without branches per cell: rows that no disc touches take the kernel without discs. A step of parity 0 needs no
  * boundary at all. */
 #ifndef DELBM_SIM_FLOW_H

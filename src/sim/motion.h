@@ -1,4 +1,4 @@
-/* Contacts and motion (stage 3 of the step): the forces of the pairs that occupation found and of the sides, the discs'
+/* Contacts and motion: the forces of the pairs that occupation found and of the sides, the discs'
  * new velocities, their new places.
  *
  * The exchange has left each disc's response A^-1 and its change of velocity without contacts. Contacts add A^-1 J,

@@ -1,4 +1,4 @@
-/* Occupation: which cells each disc covers, and how much of them (stage 1 of the step).
+/* Occupation: which cells each disc covers, and how much of them.
  *
  * A disc is convex, so it covers one run of cells in each row. Its occupation fractions eps lie in a table of its own,
  * run after run; nothing is as large as the box. The step then needs, per row, the runs of all discs from left to
