@@ -8,18 +8,20 @@
  *   S = s1+s2, D = s5+s6, pxx = s1-s2, pxy = s5-s6, tx = d5-d6 = (2 jx + qx)/3, ty = d5+d6 = (2 jy + qy)/3.
  *
  * e and eps relax at one rate, so any combination of them does: S to 4 rho/9 + u.j/3 and D to rho/9 + u.j/3. tx relaxes
- * to jx/3 at the rate of qx. What is added to each population is built from the changes of S, D, pxx, pxy, jx, tx, jy,
- * ty; f0 takes what S and D give up, so that mass is kept to round-off.
+ * to jx/3 at the rate of qx. What is added to the populations is built from a quarter of the changes of S, D, pxx, pxy,
+ * tx, ty and half of those of jx, jy, so that what is left at the end is additions; f0 takes what S and D give up, so
+ * that mass is kept to round-off.
  *
- * Force: second order in time (Guo, Zheng & Shi 2002) with F = rho g + uniform; even
- * equilibria see j + F/2, and odd moments, where the two half forces cancel, gain F and F/3.
+ * Force: second order in time (Guo, Zheng & Shi 2002) with F = rho g + uniform; even equilibria see j + F/2, and odd
+ * moments, where the two half forces cancel, gain F and F/3.
  *
  * Immersed boundary: bounce-back changes the sign of odd moments only, and 6 w rho e.v adds 2 rho v to j and 2 rho v/3
  * to t.
  *   owen    (12)-(13): rates times (1 - B), reflection of the moments before collision;
  *   unified (17)-(18): full rates, reflection of the moments after collision.
- * Either way j gains exactly 2 (rho B v - B (j + F)): what is reflected has felt the force, so that fluid inside a disc
- * keeps the disc's velocity exactly, (j + F/2)/rho = v. */
+ * Either way j gains exactly 2 h, h = rho B v - B (j + F): what is reflected has felt the force, so that fluid inside a
+ * disc keeps the disc's velocity exactly, (j + F/2)/rho = v. And t gains 2 h/3 and, of the difference j/3 - t, the part
+ * s_q (1 - B) + 2 B (owen) or s_q (1 - 2 B) + 2 B (unified). */
 #include "fluid/sweep.h"
 
 #define PASTE3(a, b, c) a##_##b##_##c
@@ -38,11 +40,13 @@ static inline __attribute__((always_inline)) void collide_stream(void *const a[Q
   const REAL *restrict cover_b = discs ? cover->b : NULL;
   const REAL *restrict cover_bvx = discs ? cover->bvx : NULL;
   const REAL *restrict cover_bvy = discs ? cover->bvy : NULL;
-  const REAL rate_nu = (REAL)constants->rates.nu, rate_e = (REAL)constants->rates.e, rate_q = (REAL)constants->rates.q;
+  const REAL quarter_nu = (REAL)(constants->rates.nu / 4), quarter_e = (REAL)(constants->rates.e / 4);
+  const REAL quarter_q = (REAL)(constants->rates.q / 4);
   const REAL gx = (REAL)constants->force[0], gy = (REAL)constants->force[1];
   const REAL zx = (REAL)constants->uniform[0], zy = (REAL)constants->uniform[1];
-  const REAL one = 1, two = 2, half = (REAL)0.5, quarter = (REAL)0.25;
-  const REAL third = (REAL)(1.0 / 3), ninth = (REAL)(1.0 / 9), four_ninths = (REAL)(4.0 / 9);
+  const REAL one = 1, two = 2, four = 4, half = (REAL)0.5, quarter = (REAL)0.25;
+  const REAL third = (REAL)(1.0 / 3), sixth = (REAL)(1.0 / 6), ninth = (REAL)(1.0 / 9), twelfth = (REAL)(1.0 / 12);
+  const REAL reflected_q = owen ? half - quarter_q : half - two * quarter_q;
   REAL sum_x = 0, sum_y = 0;
 
 #pragma omp simd reduction(+ : sum_x, sum_y)
@@ -58,47 +62,47 @@ static inline __attribute__((always_inline)) void collide_stream(void *const a[Q
     const REAL Fx = force ? rho * gx + zx : 0, Fy = force ? rho * gy + zy : 0;
     const REAL Jx = force ? jx + half * Fx : jx, Jy = force ? jy + half * Fy : jy;
     const REAL ux = Jx * inverse, uy = Jy * inverse;
-    const REAL uj = third * (Jx * ux + Jy * uy);
+    const REAL Jux = Jx * ux, Juy = Jy * uy;
 
     const REAL b = discs ? cover_b[x] : 0;
     const REAL keep = discs && owen ? one - b : one;
-    const REAL r_nu = keep * rate_nu, r_e = keep * rate_e, r_q = keep * rate_q;
+    const REAL q_nu = keep * quarter_nu, q_e = keep * quarter_e;
+    const REAL q_q = discs ? quarter_q + b * reflected_q : quarter_q;
 
-    REAL delta_S = r_e * (four_ninths * delta_rho + uj - S);
-    REAL delta_D = r_e * (ninth * delta_rho + uj - D);
-    REAL delta_pxx = r_nu * (Jx * ux - Jy * uy - pxx);
-    REAL delta_pxy = r_nu * (Jx * uy - pxy);
-    REAL delta_tx = r_q * (third * jx - tx);
-    REAL delta_ty = r_q * (third * jy - ty);
-    REAL delta_jx = 0, delta_jy = 0;
+    const REAL equilibrium = ninth * delta_rho + third * (Jux + Juy);
+    REAL quarter_S = q_e * (equilibrium + third * delta_rho - S);
+    REAL quarter_D = q_e * (equilibrium - D);
+    REAL quarter_pxx = q_nu * (Jux - Juy - pxx);
+    REAL quarter_pxy = q_nu * (Jx * uy - pxy);
+    REAL quarter_tx = q_q * (third * jx - tx), quarter_ty = q_q * (third * jy - ty);
+    REAL half_jx = 0, half_jy = 0;
 
     if (discs) {
-      const REAL rvx = rho * cover_bvx[x], rvy = rho * cover_bvy[x];
-      delta_jx = two * (rvx - b * (jx + Fx));
-      delta_jy = two * (rvy - b * (jy + Fy));
-      delta_tx += two * (third * rvx - b * (third * Fx + (owen ? tx : tx + delta_tx)));
-      delta_ty += two * (third * rvy - b * (third * Fy + (owen ? ty : ty + delta_ty)));
+      half_jx = rho * cover_bvx[x] - b * (jx + Fx);
+      half_jy = rho * cover_bvy[x] - b * (jy + Fy);
+      quarter_tx += sixth * half_jx;
+      quarter_ty += sixth * half_jy;
     }
     if (force) {
-      const REAL Fu = third * (two - r_e) * (Fx * ux + Fy * uy);
-      delta_S += Fu;
-      delta_D += Fu;
-      delta_pxx += (two - r_nu) * (Fx * ux - Fy * uy);
-      delta_pxy += (one - half * r_nu) * (Fx * uy + Fy * ux);
-      delta_jx += Fx;
-      delta_jy += Fy;
-      delta_tx += third * Fx;
-      delta_ty += third * Fy;
-      sum_x += jx + delta_jx;
-      sum_y += jy + delta_jy;
+      const REAL Fux = Fx * ux, Fuy = Fy * uy, Fu = third * (half - q_e) * (Fux + Fuy);
+      quarter_S += Fu;
+      quarter_D += Fu;
+      quarter_pxx += (half - q_nu) * (Fux - Fuy);
+      quarter_pxy += (quarter - half * q_nu) * (Fx * uy + Fy * ux);
+      half_jx += half * Fx;
+      half_jy += half * Fy;
+      quarter_tx += twelfth * Fx;
+      quarter_ty += twelfth * Fy;
+      sum_x += jx + two * half_jx;
+      sum_y += jy + two * half_jy;
     }
 
-    const REAL axis_x = quarter * (delta_S + delta_pxx), axis_y = quarter * (delta_S - delta_pxx);
-    const REAL diagonal_up = quarter * (delta_D + delta_pxy), diagonal_down = quarter * (delta_D - delta_pxy);
-    const REAL odd_x = half * (delta_jx - delta_tx), odd_y = half * (delta_jy - delta_ty);
-    const REAL odd_up = quarter * (delta_tx + delta_ty), odd_down = quarter * (delta_ty - delta_tx);
+    const REAL axis_x = quarter_S + quarter_pxx, axis_y = quarter_S - quarter_pxx;
+    const REAL diagonal_up = quarter_D + quarter_pxy, diagonal_down = quarter_D - quarter_pxy;
+    const REAL odd_x = half_jx - two * quarter_tx, odd_y = half_jy - two * quarter_ty;
+    const REAL odd_up = quarter_tx + quarter_ty, odd_down = quarter_ty - quarter_tx;
 
-    to0[x] = f0 - delta_S - delta_D;
+    to0[x] = f0 - four * (quarter_S + quarter_D);
     to1[x] = f1 + axis_x + odd_x;
     to3[x] = f3 + axis_x - odd_x;
     to2[x] = f2 + axis_y + odd_y;
