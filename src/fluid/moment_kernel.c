@@ -17,6 +17,10 @@ extern scan_row KERNEL(scan_row);
 
 typedef REAL real_lanes __attribute__((vector_size(LANES * sizeof(REAL)), aligned(sizeof(REAL)), may_alias));
 
+/* The members of struct moment_sums, in their order. */
+typedef double lanes_in_moments __attribute__((vector_size(64), may_alias));
+_Static_assert(sizeof(struct moment_sums) == sizeof(lanes_in_moments), "eight sums");
+
 static inline real_lanes load(const REAL *from)
 {
   return *(const real_lanes *)from;
@@ -27,17 +31,17 @@ static inline lanes widen(real_lanes value)
   return __builtin_convertvector(value, lanes);
 }
 
-void KERNEL(gather_run)(void *const a[Q], int n, const double *share, double rx, struct moment_sums *sums)
+void KERNEL(gather_run)(void *const a[Q], int x, int n, const double *share, double rx, struct moment_sums *sums)
 {
   const REAL *a0 = a[0], *a1 = a[1], *a2 = a[2], *a3 = a[3], *a4 = a[4], *a5 = a[5], *a6 = a[6], *a7 = a[7], *a8 = a[8];
-  const lanes zero = {0};
-  lanes jx_sum = zero, jy_sum = zero, turn = zero, mass_sum = zero, mx = zero, mxx = zero, share_sum = zero, sx = zero;
+  lanes jx_sum = {0}, jy_sum = {0}, turn = {0}, mass_sum = {0}, mx = {0}, mxx = {0}, share_sum = {0}, sx = {0};
   for (int k = 0; k < n; k += LANES) {
-    const real_lanes f1 = load(a1 + k), f2 = load(a2 + k), f3 = load(a3 + k), f4 = load(a4 + k);
-    const real_lanes f5 = load(a5 + k), f6 = load(a6 + k), f7 = load(a7 + k), f8 = load(a8 + k);
+    const int at = x + k;
+    const real_lanes f1 = load(a1 + at), f2 = load(a2 + at), f3 = load(a3 + at), f4 = load(a4 + at);
+    const real_lanes f5 = load(a5 + at), f6 = load(a6 + at), f7 = load(a7 + at), f8 = load(a8 + at);
     const real_lanes d5 = f5 - f7, d6 = f6 - f8;
     const lanes jx = widen(f1 - f3 + (d5 - d6)), jy = widen(f2 - f4 + (d5 + d6));
-    const lanes rho = 1 + widen(load(a0 + k) + (f1 + f3 + f2 + f4) + (f5 + f7 + f6 + f8));
+    const lanes rho = 1 + widen(load(a0 + at) + (f1 + f3 + f2 + f4) + (f5 + f7 + f6 + f8));
     const lanes s = lanes_load(share + k) * lanes_first(n - k), r = (rx + k) + lanes_count;
     const lanes mass = s * rho, sr = s * r;
     jx_sum += s * jx;
@@ -49,14 +53,7 @@ void KERNEL(gather_run)(void *const a[Q], int n, const double *share, double rx,
     share_sum += s;
     sx += sr;
   }
-  *sums = (struct moment_sums){.jx = lanes_sum(jx_sum),
-                               .jy = lanes_sum(jy_sum),
-                               .turn = lanes_sum(turn),
-                               .mass = lanes_sum(mass_sum),
-                               .mx = lanes_sum(mx),
-                               .mxx = lanes_sum(mxx),
-                               .share = lanes_sum(share_sum),
-                               .sx = lanes_sum(sx)};
+  *(lanes_in_moments *)sums = lanes_sums((const lanes[8]){jx_sum, jy_sum, turn, mass_sum, mx, mxx, share_sum, sx});
 }
 
 /* Adds to eight elements of a row buffer. */

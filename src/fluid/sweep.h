@@ -30,9 +30,9 @@ typedef void sweep_row(void *const a[Q], int n, const struct sweep_constants *co
 /* The same for fluid alone without force, from one set of addresses to another. */
 typedef void sweep_row_between(void *const from[Q], void *const to[Q], int n, const struct sweep_constants *constants);
 
-/* Sums over n cells, read from a[i][0..n-1], the first of them rx to the right of the disc's centre. Up to seven
+/* Sums over n cells, read from a[i][x..x+n-1], the first of them rx to the right of the disc's centre. Up to seven
  * elements past the end of the populations and of share[] are read. */
-typedef void gather_run(void *const a[Q], int n, const double *share, double rx, struct moment_sums *sums);
+typedef void gather_run(void *const a[Q], int x, int n, const double *share, double rx, struct moment_sums *sums);
 
 /* Adds n cells from x on to a row's cover: the solid moves at (vx, vy) in the first, at vy + k omega in the k-th after
  * it. Up to seven elements past the end are read and written back as they were. */

@@ -115,12 +115,12 @@ static void gather_row(const struct flow *f, struct populations *p, struct occup
   const struct band *band = occupation_band(o, y);
   const size_t first = band->row_start[y % BAND_ROWS], end = band->row_start[y % BAND_ROWS + 1];
   if (p->parity) boundary_before_row(p, f->scene->domain.side, y);
+  if (first == end) return;
+  void *a[Q];
+  populations_cells(p, 0, y, a);
   for (size_t r = first; r < end; r++) {
     const struct run *run = &band->runs[r];
-    void *a[Q];
-    if (run->n == 0) continue;
-    populations_cells(p, run->x, y, a);
-    f->kernel->gather(a, run->n, band->share + run->share, run->rx, &band->sums[r]);
+    if (run->n > 0) f->kernel->gather(a, run->x, run->n, band->share + run->share, run->rx, &band->sums[r]);
   }
 }
 
