@@ -62,7 +62,7 @@ void flow_start(struct flow *f, const struct occupation *o, const struct discs *
     for (size_t r = 0; r < count; r++) {
       const size_t disc = runs[r].disc;
       for (int k = 0; k < runs[r].n; k++) {
-        const double b = occupation_band(o, y)->share[runs[r].share + (size_t)k], omega = discs->omega[disc];
+        const double b = occupation_band(o, y)->share[runs[r].cell + (size_t)k], omega = discs->omega[disc];
         const double vx = discs->vx[disc] - omega * runs[r].ry, vy = discs->vy[disc] + omega * (runs[r].rx + k);
         if (vx != 0 || vy != 0)
           set_equilibrium(&f->populations, runs[r].x + k, y, at_rest[0] + b * vx, at_rest[1] + b * vy);
@@ -113,14 +113,14 @@ static void cancel_flux(struct flow *f)
 static void gather_row(const struct flow *f, struct populations *p, struct occupation *o, int y)
 {
   const struct band *band = occupation_band(o, y);
-  const size_t first = band->row_start[y % BAND_ROWS], end = band->row_start[y % BAND_ROWS + 1];
+  const size_t first = band->row_start[y % BAND_ROWS], end = band->row_end[y % BAND_ROWS];
   if (p->parity) boundary_before_row(p, f->scene->domain.side, y);
   if (first == end) return;
   void *a[Q];
   populations_cells(p, 0, y, a);
   for (size_t r = first; r < end; r++) {
     const struct run *run = &band->runs[r];
-    if (run->n > 0) f->kernel->gather(a, run->x, run->n, band->share + run->share, run->rx, &band->sums[r]);
+    if (run->n > 0) f->kernel->gather(a, run->x, run->n, band->share + run->cell, run->rx, &band->sums[r]);
   }
 }
 

@@ -1,30 +1,32 @@
-/* Areas of a whole disc by line tables (disc_area.h), a row at a time: the arithmetic of the occupation stage, compiled
- * per instruction set from one source (area_kernel.c). Arrays are padded to whole vectors: AREA_PAD elements past their
- * count may be read and written. */
+/* Areas of the cells that a disc covers, row by row, by line tables (disc_area.h): the arithmetic of the occupation
+ * stage, compiled per instruction set from one source (area_kernel.c). Only the rim is evaluated; cells within it are
+ * covered whole. */
 #ifndef DELBM_SOLID_AREA_H
 #define DELBM_SOLID_AREA_H
 
-enum { AREA_PAD = 16 };
+#include <stdint.h>
 
-/* Grid lines k = 0 .. count - 1 at integer places first + k, seen from a centre at `centre`: distance t, half chord h
- * (0 beyond the disc) and D(t). */
-typedef void area_lines(double radius, double centre, int first, int count, double *t, double *h, double *area);
+enum {
+  AREA_PAD = 8,   /* elements past the last cell that area_rows may write */
+  AREA_ROWS = 24, /* rows in one call, at most */
+};
 
-/* area(a, b) of the corners of lines a = 0 .. count - 1 (t, area) and the one line b. */
-typedef void area_corners(double radius, double t_b, double h_b, double area_b, int count, const double *t,
-                          const double *area, double *corner);
+/* Which cells a disc covers in each of some rows: first .. end - 1, counted from the column of its leftmost cell; those
+ * from full to full_end - 1 are covered whole. */
+struct area_extents {
+  int32_t first[AREA_ROWS], end[AREA_ROWS], full[AREA_ROWS], full_end[AREA_ROWS];
+};
 
-/* eps of cells first .. end - 1 between two lines of corners; those from full to full_end - 1 are covered. */
-typedef void area_cells(const double *low, const double *high, int first, int end, int full, int full_end, double *eps);
+/* Extents of rows first_row .. first_row + rows - 1 of the lattice, each of which the disc at (x, y) touches. */
+typedef void area_extents(double radius, double x, double y, int first_row, int rows, struct area_extents *extents);
 
-/* B(eps) (19) of `count` cells. */
-typedef void area_weights(const double *eps, int count, double three_nu, double *weight);
+/* eps, and B(eps) (19), of the cells of the rows from_row .. end_row - 1 of those extents, one row after another. */
+typedef void area_rows(double radius, double x, double y, double three_nu, int first_row, int from_row, int end_row,
+                       const struct area_extents *extents, double *eps, double *weight);
 
 struct area_kernel {
-  area_lines *lines;
-  area_corners *corners;
-  area_cells *cells;
-  area_weights *weights;
+  area_extents *extents;
+  area_rows *rows;
 };
 
 /* The kernel of the instruction set that a sweep kernel's name begins with (baseline, avx2, avx512); with NULL the

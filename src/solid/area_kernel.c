@@ -35,9 +35,22 @@ static inline double arcsine_rest(double z)
   return p * z + 1.0 / 6;
 }
 
-/* asin(t/R) for 0 <= t < R; from t = R/2 on by pi/2 - 2 asin(sqrt((1 - t/R)/2)), where R - t loses nothing. */
-static void KERNEL(lines)(double radius, double centre, int first, int count, double *restrict t_of,
-                          double *restrict h_of, double *restrict area_of)
+/* Grid lines at integer places, seen from a disc's centre: distance t, half chord h (0 beyond the disc) and D(t). */
+enum { NARROW = 32 }; /* lines of a table; discs with more are taken piece by piece */
+
+struct lines {
+  _Alignas(64) double t[NARROW], h[NARROW], area[NARROW];
+};
+
+static inline double half_chord(double radius, double t)
+{
+  const double away = fabs(t), inside = radius > away ? radius - away : 0;
+  return sqrt(inside * (radius + away));
+}
+
+/* asin(t/R) for 0 <= t < R; from t = R/2 on by pi/2 - 2 asin(sqrt((1 - t/R)/2)), where R - t loses nothing. Lines are
+ * taken at line - centre: the same bits wherever they are needed. */
+static inline void lines_at(double radius, double centre, int first, int count, struct lines *lines)
 {
   const double inverse = 1 / radius, r2 = radius * radius, quarter = M_PI / 4 * r2;
   const int n = whole_vectors(count);
@@ -50,51 +63,147 @@ static void KERNEL(lines)(double radius, double centre, int first, int count, do
     const double z = low ? x * x : 0.5 * inside * inverse, s = low ? x : sqrt(z);
     const double rest = s + s * z * arcsine_rest(z < 0.25 ? z : 0.25);
     const double angle = low ? rest : M_PI / 2 - 2 * rest;
-    const double h = sqrt(inside * (radius + away));
+    const double h = half_chord(radius, t);
     const double area = inside > 0 ? 0.5 * (r2 * angle + away * h) : quarter;
-    t_of[k] = t;
-    h_of[k] = h;
-    area_of[k] = t < 0 ? -area : area;
+    lines->t[k] = t;
+    lines->h[k] = h;
+    lines->area[k] = t < 0 ? -area : area;
   }
 }
 
-static void KERNEL(corners)(double radius, double t_b, double h_b, double area_b, int count, const double *restrict t,
-                            const double *restrict area, double *restrict corner)
+/* area(a, b) of the corners of column lines a and the one row line b. */
+static inline void corners(double radius, const struct lines *rows, int b, int count, const struct lines *columns,
+                           double *restrict corner)
 {
+  const double t_b = rows->t[b], h_b = rows->h[b], area_b = rows->area[b];
   const double whole = M_PI * radius * radius, above = 0.5 * whole - 2 * area_b; /* of the part y > b */
   const double left =
       t_b < 0 ? above - 0.5 * whole : above; /* with x > a, of a corner outside and left, less -2 D(a) */
   const int n = whole_vectors(count);
 #pragma omp simd
   for (int k = 0; k < n; k++) {
-    const double within = 0.25 * whole - area[k] - area_b + t[k] * t_b;
-    const double right = t_b < 0 ? 0.5 * whole - 2 * area[k] : 0;
-    const double leftward = t_b < 0 ? left - 2 * area[k] : left;
-    const double outside = t[k] < 0 ? leftward : right;
-    corner[k] = fabs(t[k]) < h_b ? within : outside;
+    const double t = columns->t[k], area = columns->area[k];
+    const double within = 0.25 * whole - area - area_b + t * t_b;
+    const double right = t_b < 0 ? 0.5 * whole - 2 * area : 0;
+    const double leftward = t_b < 0 ? left - 2 * area : left;
+    const double outside = t < 0 ? leftward : right;
+    corner[k] = fabs(t) < h_b ? within : outside;
   }
 }
 
-static void KERNEL(cells)(const double *restrict low, const double *restrict high, int first, int end, int full,
-                          int full_end, double *restrict eps)
+/* Where the cells of a row go, and what B they take. */
+struct target {
+  double three_nu;
+  double *eps, *weight;
+};
+
+static inline void advance(struct target *to, int cells)
+{
+  to->eps += cells;
+  to->weight += cells;
+}
+
+/* eps and B of cells first .. end - 1 between two lines of corners; those from full to full_end - 1 are covered. */
+static inline void cells(const double *restrict low, const double *restrict high, int first, int end, int full,
+                         int full_end, const struct target *to)
 {
   const int n = whole_vectors(end - first);
+  const double three_nu = to->three_nu;
+  double *restrict eps = to->eps, *restrict weight = to->weight;
 #pragma omp simd
   for (int k = 0; k < n; k++) {
     const int c = first + k;
     double area = low[c] - low[c + 1] - (high[c] - high[c + 1]);
     area = area > 0 ? area : 0; /* round-off */
     area = area < 1 ? area : 1;
-    eps[k] = c >= full && c < full_end ? 1 : area;
+    area = c >= full && c < full_end ? 1 : area;
+    eps[k] = area;
+    weight[k] = area * three_nu / ((1 - area) + three_nu);
   }
 }
 
-static void KERNEL(weights)(const double *restrict eps, int count, double three_nu, double *restrict weight)
+static void KERNEL(extents)(double radius, double x, double y, int first_row, int rows, struct area_extents *e)
 {
-  const int n = whole_vectors(count);
+  const double left = floor(x - radius) - x; /* from the centre to the line of the leftmost cell */
+  const int n = whole_vectors(rows);
 #pragma omp simd
-  for (int k = 0; k < n; k++) weight[k] = eps[k] * three_nu / ((1 - eps[k]) + three_nu);
+  for (int r = 0; r < n; r++) {
+    const double t_low = (double)(first_row + r) - y, t_high = (double)(first_row + r + 1) - y;
+    const double h_low = half_chord(radius, t_low), h_high = half_chord(radius, t_high);
+    const double wider = h_low > h_high ? h_low : h_high, narrow = h_low > h_high ? h_high : h_low;
+    const double wide = t_low < 0 && t_high > 0 ? radius : wider; /* if the widest chord lies inside this row */
+    const int first = (int)floor(-wide - left), end = (int)ceil(wide - left);
+    const int full = (int)ceil(-narrow - left), full_end = (int)floor(narrow - left);
+    const bool some = narrow > 0 && full < full_end;
+    e->first[r] = first > 0 ? first : 0; /* round-off in wide */
+    e->end[r] = end;
+    e->full[r] = some ? full : end;
+    e->full_end[r] = some ? full_end : end;
+  }
+}
+
+/* A disc whose lines fit one table, rows from .. end - 1: each corner serves four cells. Round-off may put its right
+ * edge past its last column: hence one line more. */
+static void narrow_rows(double radius, double x, const struct lines *row_lines, int from, int end,
+                        const struct area_extents *e, struct target to)
+{
+  const int column = (int)floor(x - radius), columns = (int)ceil(x + radius) - column + 2;
+  _Alignas(64) double table[2][NARROW + 2 * VECTOR];
+  struct lines column_lines;
+  double *low = table[0], *high = table[1];
+  lines_at(radius, x, column, columns, &column_lines);
+  corners(radius, row_lines, 0, columns, &column_lines, low);
+  for (int r = from; r < end; r++) {
+    corners(radius, row_lines, r - from + 1, columns, &column_lines, high);
+    cells(low, high, e->first[r], e->end[r], e->full[r], e->full_end[r], &to);
+    advance(&to, e->end[r] - e->first[r]);
+    double *const swap = low;
+    low = high;
+    high = swap;
+  }
+}
+
+/* Cells `first` .. end - 1, counted from `column`, between row lines r and r + 1: part of a rim. */
+static void rim_cells(double radius, double x, int column, const struct lines *row_lines, int r, int first, int end,
+                      struct target *to)
+{
+  enum { PIECE = NARROW - VECTOR };
+  _Alignas(64) double low[NARROW + 2 * VECTOR], high[NARROW + 2 * VECTOR];
+  struct lines column_lines;
+  for (; first < end; first += PIECE) {
+    const int n = end - first < PIECE ? end - first : PIECE;
+    lines_at(radius, x, column + first, n + 1, &column_lines);
+    corners(radius, row_lines, r, n + 1, &column_lines, low);
+    corners(radius, row_lines, r + 1, n + 1, &column_lines, high);
+    cells(low, high, 0, n, n, n, to);
+    advance(to, n);
+  }
+}
+
+static void wide_rows(double radius, double x, const struct lines *row_lines, int from, int end,
+                      const struct area_extents *e, struct target to)
+{
+  const int column = (int)floor(x - radius);
+  for (int r = from; r < end; r++) {
+    rim_cells(radius, x, column, row_lines, r - from, e->first[r], e->full[r], &to);
+    const int covered = e->full_end[r] - e->full[r];
+    for (int k = 0; k < covered; k++) to.eps[k] = to.weight[k] = 1;
+    advance(&to, covered);
+    rim_cells(radius, x, column, row_lines, r - from, e->full_end[r], e->end[r], &to);
+  }
+}
+
+static void KERNEL(rows)(double radius, double x, double y, double three_nu, int first_row, int from, int end,
+                         const struct area_extents *e, double *eps, double *weight)
+{
+  struct lines row_lines;
+  const struct target to = {three_nu, eps, weight};
+  lines_at(radius, y, first_row + from, end - from + 1, &row_lines);
+  if ((int)ceil(x + radius) - (int)floor(x - radius) + 2 <= NARROW)
+    narrow_rows(radius, x, &row_lines, from, end, e, to);
+  else
+    wide_rows(radius, x, &row_lines, from, end, e, to);
 }
 
 extern const struct area_kernel KERNEL(area_kernel);
-const struct area_kernel KERNEL(area_kernel) = {KERNEL(lines), KERNEL(corners), KERNEL(cells), KERNEL(weights)};
+const struct area_kernel KERNEL(area_kernel) = {KERNEL(extents), KERNEL(rows)};

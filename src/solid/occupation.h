@@ -1,15 +1,18 @@
 /* Occupation: which cells each disc covers, and how much of them.
  *
- * A disc is convex, so it covers one run of cells in each row. Its occupation fractions eps lie in a table of its own,
- * run after run; nothing is as large as the box. The step then needs, per row, the runs of all discs from left to
- * right:
+ * A disc is convex, so it covers one run of cells in each row. Nothing is as large as the box: a band of rows holds the
+ * runs of its own rows, and for their cells the occupation fractions eps and the shares of B (19). The step then needs,
+ * per row, the runs of all discs from left to right:
  *
- *   1. paint     per disc, in parallel: eps of its cells from line tables (disc_area.h, area.h).
- *   2. rows      per band of rows, in parallel: the runs of the band's rows, sorted by first cell, and their shares of
- *                B (19) in that order, so that the sweep finds them one after another. Runs that overlap share cells;
- *                there B follows from the total eps = min(1, sum eps_p), of which owner p has the share w_p B with
- *                w_p = eps_p/sum eps (22), for any number of owners. Two discs that share a cell are a candidate for
- *                contact.
+ *   1. places    per disc, in parallel: the rows it covers, and whether it has moved.
+ *   2. bands     of each band, which discs lie in it, along x; and whether one of them has come, gone or moved. If none
+ *                has, the band stays as it is.
+ *   3. rows      per band, in parallel: the runs of its rows, sorted by first cell. eps come from line tables
+ *                (disc_area.h, area.h) for the rim only: where it ends follows from the chords of the row's two lines,
+ *                so that no list of boundary cells need be kept from step to step, as the modified Verlet list does.
+ *                Runs that overlap share cells; there B follows from the total eps = min(1, sum eps_p), of which owner
+ *                p has the share w_p B with w_p = eps_p/sum eps (22), for any number of owners. Two discs that share a
+ *                cell are a candidate for contact.
  *
  * A band's runs, and the shares of cells in its rows, are written by the one thread that has the band: no races. All
  * orders (discs along x, runs in a row, owners of a cell, bands) follow from positions and indices alone, never from
@@ -35,8 +38,7 @@ struct run {
   uint32_t disc;
   int32_t row;   /* of its band */
   double rx, ry; /* from the disc's centre to the centre of the first cell */
-  size_t cell;   /* of the first cell, in the disc's table eps[] */
-  size_t share;  /* of the first cell, in the band's share[] */
+  size_t cell;   /* of the first cell, in the band's eps[] and share[] */
   size_t place;  /* where place[] keeps the run's number in its band */
 };
 
@@ -54,22 +56,15 @@ struct pair_batch {
 
 struct band {
   struct run *runs;
-  size_t run_count, run_capacity;
-  struct run *found; /* the same runs in the order found */
-  size_t found_capacity;
-  size_t row_start[BAND_ROWS + 1]; /* runs of the band's row k: row_start[k] .. row_start[k + 1] */
-  double *share;                   /* w_p B of the cells of all runs, one after another as the sweep meets them */
-  size_t share_capacity;
+  size_t run_capacity;
+  size_t row_start[BAND_ROWS], row_end[BAND_ROWS]; /* runs of the band's row k: row_start[k] .. row_end[k] - 1 */
+  double *eps;                                     /* of the cells of all runs, disc by disc */
+  double *share;                                   /* and w_p B */
+  size_t eps_capacity, share_capacity;
   struct moment_sums *sums; /* of each run: taken by the sweep, added up by the exchange */
   size_t sums_capacity;
   size_t shared_cells;  /* cells of the band with more than one owner */
   size_t shared_owners; /* and their owners, all told */
-};
-
-/* The cells of a disc in one row of its own: columns first .. first + count - 1 from its left edge. */
-struct span {
-  int32_t first, count;
-  size_t cell;
 };
 
 struct occupation {
@@ -83,21 +78,20 @@ struct occupation {
   const struct area_kernel *area;
 
   size_t discs;
-  bool painted;       /* at least once */
-  double *x, *y;      /* centre of each disc when it was painted */
-  int32_t *column;    /* of its leftmost cell, before wrapping */
-  int32_t *row;       /* of its lowest cell */
-  int32_t *rows;      /* how many it covers */
-  size_t *first_span; /* its spans in spans[] */
-  size_t *first_cell; /* its cells in eps[] */
-  struct span *spans;
-  size_t *place; /* [2 span + piece] the run's number in its band, or no_run */
-  double *eps;
+  bool painted;                /* at least once */
+  double *x, *y;               /* centre of each disc when it was painted */
+  int32_t *column;             /* of its leftmost cell, before wrapping */
+  int32_t *row, *rows;         /* its lowest cell, and how many rows it covers */
+  uint8_t *moved;              /* since it was last painted */
+  int32_t *was_row, *was_rows; /* of those, then */
+  size_t *first_row;           /* of the disc's rows in place[] */
+  size_t *place;               /* [2 row + piece] the run's number in its band, or no_run */
 
   uint32_t *order;      /* discs by x, then index */
   size_t *band_start;   /* [bands + 1] discs of band k: band_discs[band_start[k]] .. */
   uint32_t *band_discs; /* in the order above */
   size_t band_discs_capacity;
+  uint8_t *stale; /* of each band: to be painted anew */
   struct band *bands;
   struct pair_batch *batches; /* of each band */
   int band_count;
@@ -111,7 +105,7 @@ void occupation_destroy(struct occupation *occupation);
 /* Bytes that occupation_create would take. */
 double occupation_bytes(const struct scene *scene);
 
-/* The stage, called by all threads of a parallel region or outside of one. Discs that have not moved since they were
+/* The stage, called by all threads of a parallel region or outside of one. Bands whose discs have not moved since they were
  * painted are not painted again. Fails if memory runs out. */
 void stage_occupation(struct occupation *occupation, const struct discs *discs, struct team *team);
 
@@ -128,7 +122,7 @@ static inline const struct run *occupation_row(const struct occupation *o, int y
 {
   const struct band *band = occupation_band(o, y);
   const size_t start = band->row_start[y % BAND_ROWS];
-  *count = band->row_start[y % BAND_ROWS + 1] - start;
+  *count = band->row_end[y % BAND_ROWS] - start;
   return band->runs + start;
 }
 
@@ -136,16 +130,12 @@ static inline const struct run *occupation_row(const struct occupation *o, int y
 static inline const struct moment_sums *occupation_sums(const struct occupation *o, size_t disc, int k, int piece,
                                                         int *y)
 {
-  const size_t place = o->place[2 * (o->first_span[disc] + (size_t)k) + (size_t)piece];
+  const size_t place = o->place[2 * (o->first_row[disc] + (size_t)k) + (size_t)piece];
   const int ny = o->size[1];
   *y = o->row[disc] + k;
   const int row = !o->periodic[1] ? *y : *y < 0 ? *y + ny : *y >= ny ? *y - ny : *y;
   return place == no_run || row < 0 || row >= ny ? NULL : &occupation_band(o, row)->sums[place];
 }
-
-/* Cuts span `s` (of the disc's row number k) to the box: at most two runs, and none where the row lies outside. Returns
- * how many. */
-int occupation_runs(const struct occupation *o, size_t disc, int k, struct run runs[2], int *y);
 
 /* B of a cell with occupation fraction eps (19). */
 static inline double occupation_weight(double eps, double three_nu)
