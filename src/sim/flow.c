@@ -140,6 +140,8 @@ void stage_sweep(struct flow *f, bool ghosts_filled, const struct sweep_discs *d
   after.parity ^= 1;
   for (int y = first; y < end; y++) {
     if (p->parity && !ghosts_filled) boundary_before_row(p, side, y);
+    if (discs->now) occupation_prefetch(discs->now, y + 1);
+    if (discs->next) occupation_prefetch(discs->next, y);
     sweep_row_at(f, y, discs);
     if (p->parity) boundary_after_row(p, side, y);
     if (discs->next && y > first + 1) gather_row(f, &after, discs->next, y - 1);

@@ -1,5 +1,4 @@
-/* Areas by line tables, in plain loops that vectorise; trip counts are whole vectors, so that none ends in a remainder.
- * */
+/* Areas by line tables, in plain loops that vectorise: whole vectors, so that none ends in a remainder. */
 #include "solid/area.h"
 
 #include <math.h>
@@ -11,9 +10,10 @@
 
 enum { VECTOR = 8 };
 
+/* Rounds up; as a mask, by which the compiler sees that loops of that length have no remainder. */
 static inline int whole_vectors(int n)
 {
-  return (n + VECTOR - 1) / VECTOR * VECTOR;
+  return (n + VECTOR - 1) & -VECTOR;
 }
 
 /* (asin(s) - s)/s^3 as a polynomial in z = s^2 <= 1/4: interpolated at Chebyshev points from the series, error 2e-17.
@@ -107,9 +107,9 @@ static inline void advance(struct target *to, int cells)
 static inline void cells(const double *restrict low, const double *restrict high, int first, int end, int full,
                          int full_end, const struct target *to)
 {
-  const int n = whole_vectors(end - first);
   const double three_nu = to->three_nu;
   double *restrict eps = to->eps, *restrict weight = to->weight;
+  const int n = whole_vectors(end - first);
 #pragma omp simd
   for (int k = 0; k < n; k++) {
     const int c = first + k;
@@ -143,23 +143,19 @@ static void KERNEL(extents)(double radius, double x, double y, int first_row, in
 }
 
 /* A disc whose lines fit one table, rows from .. end - 1: each corner serves four cells. Round-off may put its right
- * edge past its last column: hence one line more. */
+ * edge past its last column: hence one line more. All corners come before all cells, since a vector that is read across
+ * two just written would wait until they have reached the cache. */
 static void narrow_rows(double radius, double x, const struct lines *row_lines, int from, int end,
                         const struct area_extents *e, struct target to)
 {
   const int column = (int)floor(x - radius), columns = (int)ceil(x + radius) - column + 2;
-  _Alignas(64) double table[2][NARROW + 2 * VECTOR];
+  _Alignas(64) double table[AREA_ROWS + 1][NARROW + 2 * VECTOR];
   struct lines column_lines;
-  double *low = table[0], *high = table[1];
   lines_at(radius, x, column, columns, &column_lines);
-  corners(radius, row_lines, 0, columns, &column_lines, low);
+  for (int r = from; r <= end; r++) corners(radius, row_lines, r - from, columns, &column_lines, table[r - from]);
   for (int r = from; r < end; r++) {
-    corners(radius, row_lines, r - from + 1, columns, &column_lines, high);
-    cells(low, high, e->first[r], e->end[r], e->full[r], e->full_end[r], &to);
+    cells(table[r - from], table[r - from + 1], e->first[r], e->end[r], e->full[r], e->full_end[r], &to);
     advance(&to, e->end[r] - e->first[r]);
-    double *const swap = low;
-    low = high;
-    high = swap;
   }
 }
 

@@ -126,6 +126,19 @@ static inline const struct run *occupation_row(const struct occupation *o, int y
   return band->runs + start;
 }
 
+/* Asks for the shares of row y, if there is one, ahead of its turn: a band's cells stand disc by disc, so that those of a
+ * row lie apart. */
+static inline void occupation_prefetch(const struct occupation *o, int y)
+{
+  enum { LINE = 8 }; /* values in a cache line */
+  if (y >= o->size[1]) return;
+  size_t count;
+  const struct run *runs = occupation_row(o, y, &count);
+  const double *share = occupation_band(o, y)->share;
+  for (size_t r = 0; r < count; r++)
+    for (int k = 0; k < runs[r].n + LINE - 1; k += LINE) __builtin_prefetch(share + runs[r].cell + (size_t)k);
+}
+
 /* The sums of one piece of the disc's row k, and that row before wrapping; NULL where nothing of it lies in the box. */
 static inline const struct moment_sums *occupation_sums(const struct occupation *o, size_t disc, int k, int piece,
                                                         int *y)
