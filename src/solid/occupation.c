@@ -254,27 +254,6 @@ static bool stretch_of(const struct occupation *o, const struct discs *discs, in
   return s->from < s->end;
 }
 
-/* One piece of a run: columns moved by `shift` into the box and cut to it. False if nothing of it, nor its reach, is
- * inside. */
-static bool cut_run(const struct occupation *o, struct run *run, int shift, int first, int count, int reach_first,
-                    int reach_end)
-{
-  const int nx = o->size[0];
-  const int low = first + shift < 0 ? 0 : first + shift;
-  const int high = first + shift + count > nx ? nx : first + shift + count;
-  const int reach_low = reach_first + shift < 0 ? 0 : reach_first + shift;
-  const int reach_high = reach_end + shift > nx ? nx : reach_end + shift;
-  if (reach_low >= reach_high) return false;
-  const int cut = low - (first + shift);
-  run->reach_first = reach_low;
-  run->reach_end = reach_high;
-  run->x = low < high ? low : reach_low;
-  run->n = low < high ? high - low : 0;
-  run->rx += cut;
-  run->cell += (size_t)cut;
-  return true;
-}
-
 /* The columns by which row k of the disc makes it a candidate: those of its rows within reach, widened by the reach. */
 static void reach_columns(const struct occupation *o, const struct stretch *s, const struct area_extents *e, int k,
                           int *first, int *end)
@@ -290,44 +269,77 @@ static void reach_columns(const struct occupation *o, const struct stretch *s, c
   }
 }
 
-/* The pieces of row k of the disc, whose cells begin at `cell`: at most two. Returns how many. */
-static int cut_row(const struct occupation *o, const struct stretch *s, const struct area_extents *e, int k,
-                   size_t cell, struct run runs[2])
-{
-  const size_t disc = s->disc;
-  const bool own = k >= 0 && k < o->rows[disc];
-  int reach_first, reach_end;
-  reach_columns(o, s, e, k, &reach_first, &reach_end);
-  const int column = o->column[disc], at = k - s->reach_from;
-  const int first = column + (own ? e->first[at] : reach_first), cells = own ? e->end[at] - e->first[at] : 0;
-  const struct run whole = {.disc = (uint32_t)disc,
-                            .row = k + s->to_band,
-                            .rx = first + 0.5 - o->x[disc],
-                            .ry = o->row[disc] + k + 0.5 - o->y[disc],
-                            .cell = cell,
-                            .place = own ? 2 * (o->first_row[disc] + (size_t)k) : no_run};
-  const int shifts[3] = {0, o->size[0], -o->size[0]};
-  int count = 0;
-  for (int n = 0; n < (s->wraps ? 3 : 1) && count < 2; n++) {
-    runs[count] = whole;
-    runs[count].place += own ? (size_t)count : 0;
-    count += cut_run(o, &runs[count], shifts[n], first, cells, column + reach_first, column + reach_end);
-  }
-  return count;
-}
-
 static int run_before(const struct run *l, const struct run *r)
 {
   return l->reach_first < r->reach_first || (l->reach_first == r->reach_first && l->disc < r->disc);
 }
 
-/* Enters a run in its row, in order: nearly so already, as discs come along x. */
-static void enter_run(struct band *band, const struct run *run)
+/* The row's last run finds its place: nearly always where it stands, as discs come along x. */
+static void sort_last(struct band *band, int row)
 {
-  const size_t start = band->row_start[run->row];
-  size_t at = band->row_end[run->row]++;
-  for (; at > start && run_before(run, &band->runs[at - 1]); at--) band->runs[at] = band->runs[at - 1];
-  band->runs[at] = *run;
+  const size_t start = band->row_start[row];
+  size_t at = band->row_end[row] - 1;
+  if (at == start || !run_before(&band->runs[at], &band->runs[at - 1])) return;
+  const struct run last = band->runs[at];
+  for (; at > start && run_before(&last, &band->runs[at - 1]); at--) band->runs[at] = band->runs[at - 1];
+  band->runs[at] = last;
+}
+
+/* Cells of a row before the box wraps or cuts it: its own, and those within reach of them. */
+struct piece {
+  int first, end, reach_first, reach_end;
+};
+
+static int clamp(int at, int most)
+{
+  return at < 0 ? 0 : at > most ? most : at;
+}
+
+/* The piece moved by `shift` columns into the box and cut to it, as piece number `number` of the disc's row k. Returns
+ * false if nothing of it, nor its reach, is inside. */
+static bool enter_piece(const struct occupation *o, struct band *band, const struct stretch *s, const struct piece *p,
+                        int k, int shift, int number, size_t cell)
+{
+  const int nx = o->size[0], row = k + s->to_band;
+  const int reach_first = clamp(p->reach_first + shift, nx), reach_end = clamp(p->reach_end + shift, nx);
+  if (reach_first >= reach_end) return false;
+  const int low = p->first + shift < 0 ? 0 : p->first + shift, high = p->end + shift > nx ? nx : p->end + shift;
+  const int cut = low - (p->first + shift);
+  const size_t disc = s->disc;
+  /* written in place: a copy read in vectors would wait for its members, written one by one, to reach the cache */
+  band->runs[band->row_end[row]++] = (struct run){
+      .x = low < high ? low : reach_first,
+      .n = low < high ? high - low : 0,
+      .reach_first = reach_first,
+      .reach_end = reach_end,
+      .disc = (uint32_t)disc,
+      .row = row,
+      .rx = p->first + 0.5 - o->x[disc] + cut,
+      .ry = o->row[disc] + k + 0.5 - o->y[disc],
+      .cell = cell + (size_t)cut,
+      .place = k >= 0 && k < o->rows[disc] ? 2 * (o->first_row[disc] + (size_t)k) + (size_t)number : no_run};
+  sort_last(band, row);
+  return true;
+}
+
+/* The runs of row k of the disc, whose cells begin at `cell`: at most two pieces. */
+static void enter_row(const struct occupation *o, struct band *band, const struct stretch *s,
+                      const struct area_extents *e, int k, size_t cell)
+{
+  const int column = o->column[s->disc], at = k - s->reach_from;
+  const bool own = k >= 0 && k < o->rows[s->disc];
+  struct piece p;
+  reach_columns(o, s, e, k, &p.reach_first, &p.reach_end);
+  p.reach_first += column;
+  p.reach_end += column;
+  p.first = own ? column + e->first[at] : p.reach_first;
+  p.end = own ? column + e->end[at] : p.reach_first;
+  if (!s->wraps) {
+    enter_piece(o, band, s, &p, k, 0, 0, cell);
+    return;
+  }
+  const int shifts[3] = {0, o->size[0], -o->size[0]};
+  for (int n = 0, count = 0; n < 3 && count < 2; n++) count += enter_piece(o, band, s, &p, k, shifts[n], count, cell);
 }
 
 /* The runs of a stretch, and the areas of their cells, which begin at `cells`; sets where they end. */
@@ -349,9 +361,7 @@ static bool paint_stretch(struct occupation *o, struct band *band, const struct 
                   &e, band->eps + *cells, band->share + *cells);
   size_t cell = *cells;
   for (int k = s->from; k < s->end; k++) {
-    struct run runs[2];
-    const int count = cut_row(o, s, &e, k, cell, runs);
-    for (int r = 0; r < count; r++) enter_run(band, &runs[r]);
+    enter_row(o, band, s, &e, k, cell);
     if (k >= own && k < own_end) cell += (size_t)(e.end[k - s->reach_from] - e.first[k - s->reach_from]);
   }
   *cells = end;
