@@ -71,8 +71,8 @@ static void spread(const struct painting *p, bool shares, size_t disc, double *c
     const struct run *row = occupation_row(&p->occupation, y, &count);
     for (size_t r = 0; r < count; r++)
       for (int k = 0; row[r].disc == disc && k < row[r].n; k++)
-        cells[y * nx + row[r].x + k] += (shares ? occupation_band(&p->occupation, y)->share
-                                                : occupation_band(&p->occupation, y)->eps)[row[r].cell + (size_t)k];
+        cells[y * nx + row[r].x + k] += shares ? occupation_band(&p->occupation, y)->share[row[r].share + (size_t)k]
+                                               : occupation_band(&p->occupation, y)->eps[row[r].cell + (size_t)k];
   }
 }
 
@@ -333,7 +333,7 @@ static const char *compare_cells(const struct occupation *a, const struct occupa
 static bool same_run(const struct run *a, const struct run *b)
 {
   return a->x == b->x && a->n == b->n && a->reach_first == b->reach_first && a->reach_end == b->reach_end &&
-         a->disc == b->disc && a->cell == b->cell && !memcmp(&a->rx, &b->rx, sizeof a->rx) &&
+         a->disc == b->disc && a->cell == b->cell && a->share == b->share && !memcmp(&a->rx, &b->rx, sizeof a->rx) &&
          !memcmp(&a->ry, &b->ry, sizeof a->ry);
 }
 
@@ -347,10 +347,10 @@ static const char *compare(const struct occupation *a, const struct occupation *
       return "rows";
     for (int row = 0; row < BAND_ROWS; row++)
       for (size_t r = s->row_start[row]; r < s->row_end[row]; r++) {
-        const size_t cell = s->runs[r].cell, bytes = (size_t)s->runs[r].n * sizeof(double);
+        const size_t cell = s->runs[r].cell, share = s->runs[r].share, bytes = (size_t)s->runs[r].n * sizeof(double);
         if (!same_run(&s->runs[r], &t->runs[r])) return "runs";
         if (memcmp(s->eps + cell, t->eps + cell, bytes)) return "fractions";
-        if (memcmp(s->share + cell, t->share + cell, bytes)) return "shares";
+        if (memcmp(s->share + share, t->share + share, bytes)) return "shares";
       }
     if (s->shared_cells != t->shared_cells || s->shared_owners != t->shared_owners) return "count of shared cells";
     if (a->batches[k].count != b->batches[k].count) return "count of pairs";

@@ -33,7 +33,7 @@ void cover_paint(struct cover *cover, const struct run *runs, size_t count, cons
   for (size_t r = 0; r < count; r++) {
     const struct run *run = &runs[r];
     const struct surface_velocity *v = &surface[run->disc];
-    cover->kernel->paint(&cover->row, run->x, run->n, share + run->cell, v->vx - v->omega * run->ry,
+    cover->kernel->paint(&cover->row, run->x, run->n, share + run->share, v->vx - v->omega * run->ry,
                          v->vy + v->omega * run->rx, v->omega);
   }
 }

@@ -62,7 +62,7 @@ void flow_start(struct flow *f, const struct occupation *o, const struct discs *
     for (size_t r = 0; r < count; r++) {
       const size_t disc = runs[r].disc;
       for (int k = 0; k < runs[r].n; k++) {
-        const double b = occupation_band(o, y)->share[runs[r].cell + (size_t)k], omega = discs->omega[disc];
+        const double b = occupation_band(o, y)->share[runs[r].share + (size_t)k], omega = discs->omega[disc];
         const double vx = discs->vx[disc] - omega * runs[r].ry, vy = discs->vy[disc] + omega * (runs[r].rx + k);
         if (vx != 0 || vy != 0)
           set_equilibrium(&f->populations, runs[r].x + k, y, at_rest[0] + b * vx, at_rest[1] + b * vy);
@@ -120,7 +120,7 @@ static void gather_row(const struct flow *f, struct populations *p, struct occup
   populations_cells(p, 0, y, a);
   for (size_t r = first; r < end; r++) {
     const struct run *run = &band->runs[r];
-    if (run->n > 0) f->kernel->gather(a, run->x, run->n, band->share + run->cell, run->rx, &band->sums[r]);
+    if (run->n > 0) f->kernel->gather(a, run->x, run->n, band->share + run->share, run->rx, &band->sums[r]);
   }
 }
 
@@ -140,8 +140,6 @@ void stage_sweep(struct flow *f, bool ghosts_filled, const struct sweep_discs *d
   after.parity ^= 1;
   for (int y = first; y < end; y++) {
     if (p->parity && !ghosts_filled) boundary_before_row(p, side, y);
-    if (discs->now) occupation_prefetch(discs->now, y + 1);
-    if (discs->next) occupation_prefetch(discs->next, y);
     sweep_row_at(f, y, discs);
     if (p->parity) boundary_after_row(p, side, y);
     if (discs->next && y > first + 1) gather_row(f, &after, discs->next, y - 1);

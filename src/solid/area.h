@@ -20,13 +20,17 @@ struct area_extents {
 /* Extents of rows first_row .. first_row + rows - 1 of the lattice, each of which the disc at (x, y) touches. */
 typedef void area_extents(double radius, double x, double y, int first_row, int rows, struct area_extents *extents);
 
-/* eps, and B(eps) (19), of the cells of the rows from_row .. end_row - 1 of those extents, one row after another. */
-typedef void area_rows(double radius, double x, double y, double three_nu, int first_row, int from_row, int end_row,
-                       const struct area_extents *extents, double *eps, double *weight);
+/* eps of the cells of the rows from_row .. end_row - 1 of those extents, one row after another. */
+typedef void area_rows(double radius, double x, double y, int first_row, int from_row, int end_row,
+                       const struct area_extents *extents, double *eps);
+
+/* B(eps) (19) of `count` cells. Up to AREA_PAD - 1 elements past them are read and written. */
+typedef void area_weights(const double *eps, int count, double three_nu, double *weight);
 
 struct area_kernel {
   area_extents *extents;
   area_rows *rows;
+  area_weights *weights;
 };
 
 /* The kernel of the instruction set that a sweep kernel's name begins with (baseline, avx2, avx512); with NULL the

@@ -91,24 +91,10 @@ static inline void corners(double radius, const struct lines *rows, int b, int c
   }
 }
 
-/* Where the cells of a row go, and what B they take. */
-struct target {
-  double three_nu;
-  double *eps, *weight;
-};
-
-static inline void advance(struct target *to, int cells)
-{
-  to->eps += cells;
-  to->weight += cells;
-}
-
-/* eps and B of cells first .. end - 1 between two lines of corners; those from full to full_end - 1 are covered. */
+/* eps of cells first .. end - 1 between two lines of corners; those from full to full_end - 1 are covered. */
 static inline void cells(const double *restrict low, const double *restrict high, int first, int end, int full,
-                         int full_end, const struct target *to)
+                         int full_end, double *restrict eps)
 {
-  const double three_nu = to->three_nu;
-  double *restrict eps = to->eps, *restrict weight = to->weight;
   const int n = whole_vectors(end - first);
 #pragma omp simd
   for (int k = 0; k < n; k++) {
@@ -116,9 +102,7 @@ static inline void cells(const double *restrict low, const double *restrict high
     double area = low[c] - low[c + 1] - (high[c] - high[c + 1]);
     area = area > 0 ? area : 0; /* round-off */
     area = area < 1 ? area : 1;
-    area = c >= full && c < full_end ? 1 : area;
-    eps[k] = area;
-    weight[k] = area * three_nu / ((1 - area) + three_nu);
+    eps[k] = c >= full && c < full_end ? 1 : area;
   }
 }
 
@@ -146,7 +130,7 @@ static void KERNEL(extents)(double radius, double x, double y, int first_row, in
  * edge past its last column: hence one line more. All corners come before all cells, since a vector that is read across
  * two just written would wait until they have reached the cache. */
 static void narrow_rows(double radius, double x, const struct lines *row_lines, int from, int end,
-                        const struct area_extents *e, struct target to)
+                        const struct area_extents *e, double *eps)
 {
   const int column = (int)floor(x - radius), columns = (int)ceil(x + radius) - column + 2;
   _Alignas(64) double table[AREA_ROWS + 1][NARROW + 2 * VECTOR];
@@ -154,52 +138,57 @@ static void narrow_rows(double radius, double x, const struct lines *row_lines, 
   lines_at(radius, x, column, columns, &column_lines);
   for (int r = from; r <= end; r++) corners(radius, row_lines, r - from, columns, &column_lines, table[r - from]);
   for (int r = from; r < end; r++) {
-    cells(table[r - from], table[r - from + 1], e->first[r], e->end[r], e->full[r], e->full_end[r], &to);
-    advance(&to, e->end[r] - e->first[r]);
+    cells(table[r - from], table[r - from + 1], e->first[r], e->end[r], e->full[r], e->full_end[r], eps);
+    eps += e->end[r] - e->first[r];
   }
 }
 
 /* Cells `first` .. end - 1, counted from `column`, between row lines r and r + 1: part of a rim. */
 static void rim_cells(double radius, double x, int column, const struct lines *row_lines, int r, int first, int end,
-                      struct target *to)
+                      double *eps)
 {
   enum { PIECE = NARROW - VECTOR };
   _Alignas(64) double low[NARROW + 2 * VECTOR], high[NARROW + 2 * VECTOR];
   struct lines column_lines;
-  for (; first < end; first += PIECE) {
-    const int n = end - first < PIECE ? end - first : PIECE;
-    lines_at(radius, x, column + first, n + 1, &column_lines);
+  for (int k = 0; k < end - first; k += PIECE) {
+    const int n = end - first - k < PIECE ? end - first - k : PIECE;
+    lines_at(radius, x, column + first + k, n + 1, &column_lines);
     corners(radius, row_lines, r, n + 1, &column_lines, low);
     corners(radius, row_lines, r + 1, n + 1, &column_lines, high);
-    cells(low, high, 0, n, n, n, to);
-    advance(to, n);
+    cells(low, high, 0, n, n, n, eps + k);
   }
 }
 
 static void wide_rows(double radius, double x, const struct lines *row_lines, int from, int end,
-                      const struct area_extents *e, struct target to)
+                      const struct area_extents *e, double *eps)
 {
   const int column = (int)floor(x - radius);
   for (int r = from; r < end; r++) {
-    rim_cells(radius, x, column, row_lines, r - from, e->first[r], e->full[r], &to);
-    const int covered = e->full_end[r] - e->full[r];
-    for (int k = 0; k < covered; k++) to.eps[k] = to.weight[k] = 1;
-    advance(&to, covered);
-    rim_cells(radius, x, column, row_lines, r - from, e->full_end[r], e->end[r], &to);
+    const int left = e->full[r] - e->first[r], within = e->full_end[r] - e->full[r], right = e->end[r] - e->full_end[r];
+    rim_cells(radius, x, column, row_lines, r - from, e->first[r], e->full[r], eps);
+    for (int k = 0; k < within; k++) eps[left + k] = 1;
+    rim_cells(radius, x, column, row_lines, r - from, e->full_end[r], e->end[r], eps + left + within);
+    eps += left + within + right;
   }
 }
 
-static void KERNEL(rows)(double radius, double x, double y, double three_nu, int first_row, int from, int end,
-                         const struct area_extents *e, double *eps, double *weight)
+static void KERNEL(rows)(double radius, double x, double y, int first_row, int from, int end,
+                         const struct area_extents *e, double *eps)
 {
   struct lines row_lines;
-  const struct target to = {three_nu, eps, weight};
   lines_at(radius, y, first_row + from, end - from + 1, &row_lines);
   if ((int)ceil(x + radius) - (int)floor(x - radius) + 2 <= NARROW)
-    narrow_rows(radius, x, &row_lines, from, end, e, to);
+    narrow_rows(radius, x, &row_lines, from, end, e, eps);
   else
-    wide_rows(radius, x, &row_lines, from, end, e, to);
+    wide_rows(radius, x, &row_lines, from, end, e, eps);
+}
+
+static void KERNEL(weights)(const double *restrict eps, int count, double three_nu, double *restrict weight)
+{
+  const int n = whole_vectors(count);
+#pragma omp simd
+  for (int k = 0; k < n; k++) weight[k] = eps[k] * three_nu / ((1 - eps[k]) + three_nu);
 }
 
 extern const struct area_kernel KERNEL(area_kernel);
-const struct area_kernel KERNEL(area_kernel) = {KERNEL(extents), KERNEL(rows)};
+const struct area_kernel KERNEL(area_kernel) = {KERNEL(extents), KERNEL(rows), KERNEL(weights)};

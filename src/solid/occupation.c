@@ -353,12 +353,11 @@ static bool paint_stretch(struct occupation *o, struct band *band, const struct 
   o->area->extents(radius, x, y, o->row[disc] + s->reach_from, s->reach_end - s->reach_from, &e);
   size_t end = *cells;
   for (int k = own; k < own_end; k++) end += (size_t)(e.end[k - s->reach_from] - e.first[k - s->reach_from]);
-  if (!memory_grow(&band->eps, &band->eps_capacity, end + SLACK, sizeof *band->eps, "a band's cells", status) ||
-      !memory_grow(&band->share, &band->share_capacity, end + SLACK, sizeof *band->share, "a band's cells", status))
+  if (!memory_grow(&band->eps, &band->eps_capacity, end + SLACK, sizeof *band->eps, "a band's cells", status))
     return false;
   if (own < own_end)
-    o->area->rows(radius, x, y, o->three_nu, o->row[disc] + s->reach_from, own - s->reach_from, own_end - s->reach_from,
-                  &e, band->eps + *cells, band->share + *cells);
+    o->area->rows(radius, x, y, o->row[disc] + s->reach_from, own - s->reach_from, own_end - s->reach_from, &e,
+                  band->eps + *cells);
   size_t cell = *cells;
   for (int k = s->from; k < s->end; k++) {
     enter_row(o, band, s, &e, k, cell);
@@ -386,6 +385,25 @@ static bool make_room(struct occupation *o, int index, const struct discs *discs
          memory_grow(&band->sums, &band->sums_capacity, total, sizeof *band->sums, "a band's sums", status);
 }
 
+/* The shares of the band's cells, as if each had one owner. What a kernel writes past the end of a run is overwritten by
+ * the next. */
+static bool lay_out_shares(struct occupation *o, struct band *band, size_t cells, struct status *status)
+{
+  size_t share = 0;
+  if (!memory_grow(&band->share, &band->share_capacity, cells + SLACK, sizeof *band->share, "a band's cells", status))
+    return false;
+  for (int k = 0; k < BAND_ROWS; k++)
+    for (size_t r = band->row_start[k]; r < band->row_end[k]; r++) {
+      struct run *run = &band->runs[r];
+      run->share = share;
+      if (run->n == 0) continue;
+      o->place[run->place] = r;
+      o->area->weights(band->eps + run->cell, run->n, o->three_nu, band->share + share);
+      share += (size_t)run->n;
+    }
+  return true;
+}
+
 static bool paint_band(struct occupation *o, int index, const struct discs *discs, struct status *status)
 {
   struct band *band = &o->bands[index];
@@ -397,10 +415,7 @@ static bool paint_band(struct occupation *o, int index, const struct discs *disc
       if (stretch_of(o, discs, index, o->band_discs[d], image, &s) &&
           !paint_stretch(o, band, discs, &s, &cells, status))
         return false;
-  for (int k = 0; k < BAND_ROWS; k++)
-    for (size_t r = band->row_start[k]; r < band->row_end[k]; r++)
-      if (band->runs[r].n > 0) o->place[band->runs[r].place] = r;
-  return true;
+  return lay_out_shares(o, band, cells, status);
 }
 
 static bool covers(const struct run *run, int x)
@@ -426,7 +441,8 @@ static void share_cell(struct occupation *o, struct band *band, const struct run
   if (total <= 0) return;
   const double weight = occupation_weight(fmin(1, total), o->three_nu) / total;
   for (size_t r = 0; r < end; r++)
-    if (covers(&runs[r], x)) band->share[cell_of(&runs[r], x)] = band->eps[cell_of(&runs[r], x)] * weight;
+    if (covers(&runs[r], x))
+      band->share[runs[r].share + (size_t)(x - runs[r].x)] = band->eps[cell_of(&runs[r], x)] * weight;
   band->shared_cells++;
   band->shared_owners += owners;
 }

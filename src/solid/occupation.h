@@ -38,7 +38,8 @@ struct run {
   uint32_t disc;
   int32_t row;   /* of its band */
   double rx, ry; /* from the disc's centre to the centre of the first cell */
-  size_t cell;   /* of the first cell, in the band's eps[] and share[] */
+  size_t cell;   /* of the first cell, in the band's eps[] */
+  size_t share;  /* of the first cell, in the band's share[] */
   size_t place;  /* where place[] keeps the run's number in its band */
 };
 
@@ -59,7 +60,7 @@ struct band {
   size_t run_capacity;
   size_t row_start[BAND_ROWS], row_end[BAND_ROWS]; /* runs of the band's row k: row_start[k] .. row_end[k] - 1 */
   double *eps;                                     /* of the cells of all runs, disc by disc */
-  double *share;                                   /* and w_p B */
+  double *share;                                   /* w_p B of the same cells, row by row as the sweep meets them */
   size_t eps_capacity, share_capacity;
   struct moment_sums *sums; /* of each run: taken by the sweep, added up by the exchange */
   size_t sums_capacity;
@@ -124,19 +125,6 @@ static inline const struct run *occupation_row(const struct occupation *o, int y
   const size_t start = band->row_start[y % BAND_ROWS];
   *count = band->row_end[y % BAND_ROWS] - start;
   return band->runs + start;
-}
-
-/* Asks for the shares of row y, if there is one, ahead of its turn: a band's cells stand disc by disc, so that those of a
- * row lie apart. */
-static inline void occupation_prefetch(const struct occupation *o, int y)
-{
-  enum { LINE = 8 }; /* values in a cache line */
-  if (y >= o->size[1]) return;
-  size_t count;
-  const struct run *runs = occupation_row(o, y, &count);
-  const double *share = occupation_band(o, y)->share;
-  for (size_t r = 0; r < count; r++)
-    for (int k = 0; k < runs[r].n + LINE - 1; k += LINE) __builtin_prefetch(share + runs[r].cell + (size_t)k);
 }
 
 /* The sums of one piece of the disc's row k, and that row before wrapping; NULL where nothing of it lies in the box. */
