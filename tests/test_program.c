@@ -142,8 +142,8 @@ Test(program, exit_codes_tell_what_went_wrong)
 Test(program, help_and_version_are_everywhere)
 {
   cr_expect_eq(shell("%s --version | grep -q '^delbm [0-9]'", DELBM), 0);
-  static const char *const commands[] = {"", "run", "info", "bench"};
-  for (size_t k = 0; k < 4; k++)
+  static const char *const commands[] = {"", "run", "info", "analyse", "bench"};
+  for (size_t k = 0; k < 5; k++)
     cr_expect_eq(shell("%s %s --help | grep -q '^usage: delbm'", DELBM, commands[k]), 0, "%s", commands[k]);
   cr_expect_eq(shell("%s bench --list | grep -q baseline-double", DELBM), 0);
   cr_expect_eq(shell("%s run --help-keys | grep -q fluid.viscosity", DELBM), 0);
@@ -158,6 +158,20 @@ Test(program, info_names_the_stages_that_run_and_those_left_out)
   cr_expect_eq(shell("grep -q 'occupation every step' crowd.txt && grep -q 'pairs and sides' crowd.txt"), 0);
   cr_expect_eq(shell("grep -q 'occupation left out' empty.txt && grep -q 'exchange   left out' empty.txt"), 0);
   cr_expect_eq(shell("grep -q 'Reynolds' crowd.txt && grep -q 'Mach' crowd.txt && grep -q 'MiB' crowd.txt"), 0);
+}
+
+Test(program, analyse_reports_a_run_and_refuses_what_is_none)
+{
+  write_file("crowd.yaml", crowd);
+  cr_assert_eq(shell("%s run crowd.yaml --set particles.gravity=[0,-4e-4] --quiet --out o >/dev/null", DELBM), 0);
+  cr_assert_eq(shell("%s analyse o --json o/analysis.json --tables >out 2>err", DELBM), 0);
+  cr_expect(contains("out", "settling.interface_speed") && !contains("out", "body.") && !contains("out", "pair."));
+  cr_expect(contains("o/analysis.json", "\"interface_speed\": ") && contains("o/analysis.json", "\"mixing\": ["));
+  cr_expect_eq(shell("test $(wc -l <o/settling.csv) = 8 && grep -q '^step,height,concentration$' o/profile.csv"), 0);
+  cr_expect_eq(shell("%s analyse absent 2>err", DELBM), 4);
+  cr_expect_eq(shell("%s analyse 2>err", DELBM), 2);
+  cr_expect_eq(shell("echo nonsense >o/particles.csv; %s analyse o 2>err", DELBM), 3);
+  cr_expect(contains("err", "o/particles.csv:1: not a table of discs"));
 }
 
 Test(program, an_interrupted_run_ends_in_order)

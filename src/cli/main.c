@@ -18,6 +18,7 @@ struct command {
 static const struct command commands[] = {
     {"run", command_run, "simulate a case"},
     {"info", command_info, "show a case and the plan of its run"},
+    {"analyse", command_analyse, "report what the discs of a finished run did"},
     {"bench", command_bench, "measure speed on this machine"},
 };
 

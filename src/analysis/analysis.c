@@ -1,0 +1,181 @@
+#include "analysis/analysis.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+/* One figure of the report. */
+struct figure {
+  const char *part, *name;
+  double value; /* NAN: left out */
+  const char *unit, *meaning;
+};
+
+enum { FIGURES_MAX = 48 };
+
+struct figures {
+  size_t count;
+  struct figure items[FIGURES_MAX];
+};
+
+static void add(struct figures *f, const char *part, const char *name, double value, const char *unit,
+                const char *meaning)
+{
+  if (isfinite(value)) f->items[f->count++] = (struct figure){part, name, value, unit, meaning};
+}
+
+static void add_body(struct figures *f, const struct body *b)
+{
+  add(f, "body", "first_step", (double)b->first, "steps", "start of the window that means are taken over");
+  add(f, "body", "last_step", (double)b->last, "steps", "its end");
+  add(f, "body", "speed", b->speed.mean, "cells/step", b->held ? "of the stream" : "terminal velocity");
+  if (!b->held) add(f, "body", "speed_spread", b->speed.deviation, "cells/step", "standard deviation of that");
+  add(f, "body", "reynolds", b->reynolds, "-", "2 U R/nu");
+  add(f, "body", "drag", b->drag, "-", b->held ? "C_D = F/(rho U^2 R)" : "C_D = pi R g (rho_s - rho)/(rho U^2)");
+  add(f, "body", "drag_printed", b->drag_printed, "-", "8 R g (rho_s - rho)/(3 rho U^2), as the paper prints it");
+  add(f, "body", "drag_spread", b->drag_spread, "-", "standard deviation of C_D");
+  add(f, "body", "lift", b->lift.mean, "-", "C_L = F/(rho U^2 R)");
+  add(f, "body", "lift_spread", b->lift.deviation, "-", "standard deviation of C_L");
+  add(f, "body", "torque", b->torque.mean, "-", "C_M = T/(rho U^2 R^2)");
+  add(f, "body", "spin", b->spin, "-", "omega R/U");
+  add(f, "body", "strouhal", b->strouhal, "-", "2 f R/U of the shedding");
+  add(f, "body", "swing", b->swing, "-", b->held ? "amplitude of C_L" : "amplitude of the lateral velocity over U");
+}
+
+static void add_pair(struct figures *f, const struct pair *p)
+{
+  add(f, "pair", "draft_time", p->draft_time, "steps", "trailing disc falls fastest before contact");
+  add(f, "pair", "draft_speed", p->draft_speed, "cells/step", "its velocity then");
+  add(f, "pair", "kiss_time", p->kiss_time, "steps", "first contact");
+  add(f, "pair", "kiss_offset", p->offset, "cells", "between the centres across gravity at first contact");
+  add(f, "pair", "even_time", p->even_time, "steps", "speeds equal within 2 %");
+  add(f, "pair", "tumble_time", p->tumble_time, "steps", "trailing disc passes the leading one");
+  add(f, "pair", "tumble_height", p->tumble_height, "cells", "where");
+  add(f, "pair", "throw_time", p->throw_time, "steps", "leading disc fastest sideways");
+  add(f, "pair", "throw_speed", p->throw_speed, "cells/step", "its velocity then");
+  add(f, "pair", "slow_time", p->slow_time, "steps", "leading disc slowest after that");
+  add(f, "pair", "slow_speed", p->slow_speed, "cells/step", "its velocity then");
+  add(f, "pair", "wall_time", p->wall_time, "steps", "leading disc nearest to a side wall");
+  add(f, "pair", "wall_distance", p->wall_distance, "cells", "its centre from it");
+}
+
+static void add_settling(struct figures *f, const struct settling *s)
+{
+  const size_t last = s->snapshots - 1;
+  add(f, "settling", "interface_speed", -s->fall.slope, "cells/step", "fall of the interface, from 10 to 70 % of it");
+  add(f, "settling", "interface_r2", s->fall.r2, "-", "R^2 of that line");
+  add(f, "settling", "front_speed", s->rise.slope, "cells/step", "rise of the sediment's surface meanwhile");
+  add(f, "settling", "front_r2", s->rise.r2, "-", "R^2 of that line");
+  /* what arrives from above is what the bed takes: phi0 (u + s) = phi_bed s */
+  add(f, "settling", "front_speed_kynch", -s->fall.slope * s->initial / (s->bed - s->initial), "cells/step",
+      "of a jump from the initial concentration to the bed's");
+  add(f, "settling", "front_width", s->sharpness, "cells", "over which half of that change happens");
+  add(f, "settling", "concentration", s->initial, "-", "at the start");
+  add(f, "settling", "bed", s->bed, "-", "concentration of the bed at the end");
+  add(f, "settling", "interface_start", s->interface[0], "cells", "height of the interface at the start");
+  add(f, "settling", "interface_end", s->interface[last], "cells", "height of the interface at the end");
+  add(f, "settling", "mixing_start", s->mixing[0], "-", "mixing index at the start");
+  add(f, "settling", "mixing_end", s->mixing[last], "-", "mixing index at the end");
+  add(f, "settling", "fastest_end", s->restless, "cells/step", "fastest disc at the end");
+}
+
+static struct figures figures_of(const struct analysis *a)
+{
+  struct figures figures = {0};
+  if (a->has_body) add_body(&figures, &a->body);
+  if (a->has_pair) add_pair(&figures, &a->pair);
+  if (a->has_settling) add_settling(&figures, &a->settling);
+  return figures;
+}
+
+bool analysis_create(struct analysis *a, const struct scene *scene, const char *path, struct status *status)
+{
+  *a = (struct analysis){.scene = scene};
+  bool ok = history_read(&a->history, path, scene->particles.count, status);
+  if (ok && body_applies(scene)) {
+    a->has_body = true;
+    ok = body_analyse(&a->body, scene, &a->history, status);
+  }
+  if (ok && pair_applies(scene)) {
+    a->has_pair = true;
+    a->pair = pair_analyse(scene, &a->history);
+  }
+  if (ok && settling_applies(scene)) a->has_settling = ok = settling_create(&a->settling, scene, &a->history, status);
+  if (!ok) analysis_destroy(a);
+  return ok;
+}
+
+void analysis_destroy(struct analysis *a)
+{
+  if (a->has_settling) settling_destroy(&a->settling);
+  history_clear(&a->history);
+  *a = (struct analysis){0};
+}
+
+void analysis_print(const struct analysis *a, FILE *stream)
+{
+  const struct figures figures = figures_of(a);
+  const struct history *h = &a->history;
+  fprintf(stream, "# %zu discs, %zu snapshots, steps %" PRId64 " to %" PRId64 "\n", h->discs, h->snapshots, h->step[0],
+          h->step[h->snapshots - 1]);
+  for (const struct figure *k = figures.items; k < figures.items + figures.count; k++) {
+    char name[64];
+    snprintf(name, sizeof name, "%s.%s", k->part, k->name);
+    fprintf(stream, "%-27s %14.8g  %-10s  %s\n", name, k->value, k->unit, k->meaning);
+  }
+}
+
+static void json_array(const char *name, const double *values, size_t count, FILE *stream)
+{
+  fprintf(stream, ",\n    \"%s\": [", name);
+  for (size_t k = 0; k < count; k++) fprintf(stream, "%s%.17g", k ? ", " : "", values[k]);
+  fputs("]", stream);
+}
+
+static void json_series(const struct settling *s, FILE *stream)
+{
+  fputs(",\n    \"step\": [", stream);
+  for (size_t n = 0; n < s->snapshots; n++) fprintf(stream, "%s%" PRId64, n ? ", " : "", s->step[n]);
+  fputs("]", stream);
+  json_array("interface", s->interface, s->snapshots, stream);
+  json_array("front", s->front, s->snapshots, stream);
+  json_array("mixing", s->mixing, s->snapshots, stream);
+  json_array("layers", s->layer[0], s->snapshots * SETTLING_LAYERS, stream);
+  json_array("profile", s->concentration + (s->snapshots - 1) * s->slabs, s->slabs, stream);
+}
+
+void analysis_json(const struct analysis *a, FILE *stream)
+{
+  const struct figures figures = figures_of(a);
+  const char *part = "";
+  fputs("{", stream);
+  for (const struct figure *k = figures.items; k < figures.items + figures.count; k++) {
+    const bool starts = strcmp(k->part, part) != 0;
+    if (starts) fprintf(stream, "%s\n  \"%s\": {", *part ? "\n  }," : "", k->part);
+    fprintf(stream, "%s\n    \"%s\": %.17g", starts ? "" : ",", k->name, k->value);
+    part = k->part;
+  }
+  if (a->has_settling) json_series(&a->settling, stream);
+  fputs(*part ? "\n  }\n}\n" : "}\n", stream);
+}
+
+void analysis_settling_csv(const struct settling *s, FILE *stream)
+{
+  fputs("step,interface,front,mixing", stream);
+  for (int k = 1; k <= SETTLING_LAYERS; k++) fprintf(stream, ",layer%d", k);
+  fputs("\n", stream);
+  for (size_t n = 0; n < s->snapshots; n++) {
+    fprintf(stream, "%" PRId64 ",%.17g,%.17g,%.17g", s->step[n], s->interface[n], s->front[n], s->mixing[n]);
+    for (int k = 0; k < SETTLING_LAYERS; k++) fprintf(stream, ",%.17g", s->layer[n][k]);
+    fputs("\n", stream);
+  }
+}
+
+void analysis_profile_csv(const struct settling *s, FILE *stream)
+{
+  fputs("step,height,concentration\n", stream);
+  for (size_t n = 0; n < s->snapshots; n++)
+    for (size_t k = 0; k < s->slabs; k++)
+      fprintf(stream, "%" PRId64 ",%.17g,%.17g\n", s->step[n], ((double)k + 0.5) * s->slab,
+              s->concentration[n * s->slabs + k]);
+}

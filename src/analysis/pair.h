@@ -1,0 +1,28 @@
+/* Two discs that settle one above the other: when they draft, kiss and tumble. Heights are against gravity along -y;
+ * `trailing` is the disc that starts higher. Times are in steps, found between snapshots by a straight line; NAN for what
+ * does not happen. */
+#ifndef DELBM_ANALYSIS_PAIR_H
+#define DELBM_ANALYSIS_PAIR_H
+
+#include "analysis/history.h"
+#include "scene/scene.h"
+
+/* Speeds this close, as a part of the faster, count as equal. */
+static const double pair_even = 0.02;
+
+struct pair {
+  double draft_time, draft_speed;    /* trailing falls fastest before they touch, and that velocity (vy < 0) */
+  double kiss_time;                  /* centres first less than the sum of the radii apart */
+  double even_time;                  /* speeds are equal after drafting */
+  double tumble_time, tumble_height; /* trailing first no higher than leading, and where */
+  double throw_time, throw_speed;    /* leading moves fastest sideways, of all the run: vx */
+  double slow_time, slow_speed;      /* leading falls slowest after it was thrown: vy */
+  double offset;                     /* |x_trailing - x_leading| at the kiss, cells */
+  double wall_time, wall_distance;   /* leading's centre nearest to a side wall after it was thrown, cells */
+};
+
+/* True for two free discs, one higher than the other, under gravity along -y. */
+bool pair_applies(const struct scene *scene);
+struct pair pair_analyse(const struct scene *scene, const struct history *history);
+
+#endif

@@ -1,0 +1,240 @@
+#include "analysis/settling.h"
+
+#include "base/memory.h"
+#include "contact/lens.h"
+
+#include <gsl/gsl_sort.h>
+#include <math.h>
+#include <stdlib.h>
+
+/* What the parts of the analysis share while it is made. */
+struct work {
+  const struct scene *scene;
+  const struct history *history;
+  struct settling *to;
+  double radius;   /* mean */
+  size_t *order;   /* discs by initial height, from the lowest */
+  unsigned *layer; /* of each disc */
+  double *scratch; /* [discs] */
+  size_t squares[2];
+  unsigned (*held)[SETTLING_LAYERS]; /* [squares] discs of each layer */
+};
+
+bool settling_applies(const struct scene *scene)
+{
+  size_t free_discs = 0;
+  for (size_t i = 0; i < scene->particles.count; i++) free_discs += scene->particles.discs[i].motion == DISC_FREE;
+  return free_discs == scene->particles.count && free_discs >= SETTLING_LEAST && scene->particles.gravity[1] < 0 &&
+         scene->particles.gravity[0] == 0;
+}
+
+static double interface_of(const struct work *w, size_t snapshot)
+{
+  const size_t discs = w->history->discs, highest = (size_t)lround(sqrt((double)discs));
+  for (size_t i = 0; i < discs; i++) w->scratch[i] = history_at(w->history, snapshot, i, HISTORY_Y);
+  gsl_sort(w->scratch, 1, discs);
+  return fit_spread(w->scratch + discs - highest, highest).mean;
+}
+
+/* Area of a disc below the height `level`: the part beyond a wall that it has sunk into. */
+static double area_below(double radius, double y, double level)
+{
+  return lens_of_wall(radius, y - level).area;
+}
+
+static void add_concentration(const struct work *w, size_t snapshot)
+{
+  const struct settling *s = w->to;
+  double *row = s->concentration + snapshot * s->slabs;
+  const double area = s->slab * w->scene->domain.size[0];
+  for (size_t i = 0; i < w->history->discs; i++) {
+    const double r = w->scene->particles.discs[i].radius, y = history_at(w->history, snapshot, i, HISTORY_Y);
+    const double first = fmax(0, floor((y - r) / s->slab));
+    double below = area_below(r, y, first * s->slab);
+    for (size_t k = (size_t)first; k < s->slabs && (double)k * s->slab < y + r; k++) {
+      const double next = area_below(r, y, (double)(k + 1) * s->slab);
+      row[k] += (next - below) / area;
+      below = next;
+    }
+  }
+}
+
+static void add_layers(const struct work *w, size_t snapshot)
+{
+  unsigned count[SETTLING_LAYERS] = {0};
+  double *mean = w->to->layer[snapshot];
+  for (size_t i = 0; i < w->history->discs; i++) {
+    mean[w->layer[i]] += history_at(w->history, snapshot, i, HISTORY_Y);
+    count[w->layer[i]]++;
+  }
+  for (int k = 0; k < SETTLING_LAYERS; k++) mean[k] /= count[k];
+}
+
+static size_t square_of(const struct work *w, size_t snapshot, size_t disc)
+{
+  const double edge = 10 * w->radius;
+  const double x = history_at(w->history, snapshot, disc, HISTORY_X) / edge;
+  const double y = history_at(w->history, snapshot, disc, HISTORY_Y) / edge;
+  const size_t i = (size_t)fmin(fmax(x, 0), (double)(w->squares[0] - 1));
+  const size_t j = (size_t)fmin(fmax(y, 0), (double)(w->squares[1] - 1));
+  return j * w->squares[0] + i;
+}
+
+static double mixing_of(const struct work *w, size_t snapshot)
+{
+  const size_t squares = w->squares[0] * w->squares[1];
+  const double discs = (double)w->history->discs, p = 1.0 / SETTLING_LAYERS;
+  double variance = 0, filled = 0;
+  for (size_t q = 0; q < squares; q++)
+    for (int k = 0; k < SETTLING_LAYERS; k++) w->held[q][k] = 0;
+  for (size_t i = 0; i < w->history->discs; i++) w->held[square_of(w, snapshot, i)][w->layer[i]]++;
+  for (size_t q = 0; q < squares; q++) {
+    unsigned all = 0;
+    for (int k = 0; k < SETTLING_LAYERS; k++) all += w->held[q][k];
+    if (all == 0) continue;
+    filled++;
+    for (int k = 0; k < SETTLING_LAYERS; k++)
+      variance += all / discs * (w->held[q][k] / (double)all - p) * (w->held[q][k] / (double)all - p) / SETTLING_LAYERS;
+  }
+  /* each filled square adds p (1 - p)/n_q times its weight n_q/N: chance leaves p (1 - p) filled/N */
+  const double apart = p * (1 - p), chance = apart * filled / discs;
+  return chance < apart ? (apart - variance) / (apart - chance) : 1;
+}
+
+/* Height at which a profile, coming from below the interface downwards, first reaches `level`. */
+static double height_of(const struct settling *s, size_t snapshot, double level)
+{
+  const double *row = s->concentration + snapshot * s->slabs;
+  size_t k = (size_t)fmin(s->interface[snapshot] / s->slab, (double)(s->slabs - 1));
+  while (k > 0 && row[k] < level) k--;
+  if (row[k] < level || k + 1 >= s->slabs) return k ? (double)s->slabs * s->slab : 0;
+  const double share = row[k] > row[k + 1] ? (row[k] - level) / (row[k] - row[k + 1]) : 0;
+  return ((double)k + 0.5 + fmin(fmax(share, 0), 1)) * s->slab;
+}
+
+static double bed_of(const struct settling *s)
+{
+  const double *row = s->concentration + (s->snapshots - 1) * s->slabs;
+  const double top = s->interface[s->snapshots - 1] / s->slab;
+  const size_t first = (size_t)(0.25 * top), end = (size_t)(0.75 * top) + 1;
+  return fit_spread(row + first, end - first).mean;
+}
+
+static bool is_fitted(const struct settling *s, size_t snapshot)
+{
+  const double whole = s->interface[0] - s->interface[s->snapshots - 1];
+  const double fallen = s->interface[0] - s->interface[snapshot];
+  return whole > 0 && fallen >= 0.1 * whole && fallen <= 0.7 * whole;
+}
+
+/* The lines through interface and surface of the sediment. */
+static bool fit_fronts(struct settling *s, struct status *status)
+{
+  double *columns = memory_allocate(3 * s->snapshots, sizeof *columns, "the fits", status);
+  if (!columns) return false;
+  double *step = columns, *fall = columns + s->snapshots, *rise = fall + s->snapshots, width = 0;
+  const double between = s->bed - s->initial;
+  size_t count = 0;
+  for (size_t n = 0; n < s->snapshots; n++) {
+    s->front[n] = height_of(s, n, s->initial + 0.5 * between);
+    if (!is_fitted(s, n)) continue;
+    step[count] = (double)s->step[n];
+    fall[count] = s->interface[n];
+    rise[count++] = s->front[n];
+    width += height_of(s, n, s->initial + 0.25 * between) - height_of(s, n, s->initial + 0.75 * between);
+  }
+  s->fall = fit_line(step, fall, count);
+  s->rise = fit_line(step, rise, count);
+  s->sharpness = count ? width / (double)count : NAN;
+  free(columns);
+  return true;
+}
+
+static double fastest(const struct history *h)
+{
+  double most = 0;
+  for (size_t i = 0; i < h->discs; i++)
+    most = fmax(most,
+                hypot(history_at(h, h->snapshots - 1, i, HISTORY_VX), history_at(h, h->snapshots - 1, i, HISTORY_VY)));
+  return most;
+}
+
+/* Sorts the discs into layers by their height at the first snapshot. */
+static void assign_layers(struct work *w)
+{
+  const size_t discs = w->history->discs;
+  for (size_t i = 0; i < discs; i++) w->scratch[i] = history_at(w->history, 0, i, HISTORY_Y);
+  gsl_sort_index(w->order, w->scratch, 1, discs);
+  for (size_t k = 0; k < discs; k++) w->layer[w->order[k]] = (unsigned)(k * SETTLING_LAYERS / discs);
+}
+
+static double initial_of(const struct scene *scene)
+{
+  double area = 0;
+  for (size_t i = 0; i < scene->particles.count; i++)
+    area += M_PI * scene->particles.discs[i].radius * scene->particles.discs[i].radius;
+  const double *region = scene->particles.fill.region;
+  const bool filled = scene->particles.fill.present && scene->particles.listed == 0;
+  return area / (filled ? (region[2] - region[0]) * (region[3] - region[1]) : (double)scene_cells(scene));
+}
+
+static bool allocate(struct work *w, struct status *status)
+{
+  struct settling *s = w->to;
+  const size_t n = s->snapshots, discs = w->history->discs;
+  return (s->interface = memory_allocate(n, sizeof *s->interface, "the interface", status)) &&
+         (s->front = memory_allocate(n, sizeof *s->front, "the sediment's surface", status)) &&
+         (s->mixing = memory_allocate(n, sizeof *s->mixing, "the mixing", status)) &&
+         (s->layer = memory_allocate(n, sizeof *s->layer, "the layers", status)) &&
+         (s->concentration = memory_allocate(n * s->slabs, sizeof(double), "the profiles", status)) &&
+         (w->order = memory_allocate(discs, sizeof *w->order, "the layers", status)) &&
+         (w->layer = memory_allocate(discs, sizeof *w->layer, "the layers", status)) &&
+         (w->scratch = memory_allocate(discs, sizeof *w->scratch, "the heights", status)) &&
+         (w->held = memory_allocate(w->squares[0] * w->squares[1], sizeof *w->held, "the mixing", status));
+}
+
+static double mean_radius(const struct scene *scene)
+{
+  double sum = 0;
+  for (size_t i = 0; i < scene->particles.count; i++) sum += scene->particles.discs[i].radius;
+  return sum / (double)scene->particles.count;
+}
+
+bool settling_create(struct settling *s, const struct scene *scene, const struct history *history,
+                     struct status *status)
+{
+  *s = (struct settling){.snapshots = history->snapshots, .step = history->step, .initial = initial_of(scene)};
+  struct work w = {.scene = scene, .history = history, .to = s, .radius = mean_radius(scene)};
+  s->slab = 4 * w.radius;
+  s->slabs = (size_t)ceil(scene->domain.size[1] / s->slab);
+  for (int axis = 0; axis < 2; axis++) w.squares[axis] = (size_t)ceil(scene->domain.size[axis] / (10 * w.radius));
+  bool ok = allocate(&w, status);
+  if (ok) assign_layers(&w);
+  for (size_t n = 0; ok && n < s->snapshots; n++) {
+    s->interface[n] = interface_of(&w, n);
+    s->mixing[n] = mixing_of(&w, n);
+    add_layers(&w, n);
+    add_concentration(&w, n);
+  }
+  if (ok) {
+    s->bed = bed_of(s);
+    s->restless = fastest(history);
+    ok = fit_fronts(s, status);
+  }
+  free(w.order);
+  free(w.layer);
+  free(w.scratch);
+  free(w.held);
+  if (!ok) settling_destroy(s);
+  return ok;
+}
+
+void settling_destroy(struct settling *s)
+{
+  free(s->interface);
+  free(s->front);
+  free(s->mixing);
+  free(s->layer);
+  free(s->concentration);
+  *s = (struct settling){0};
+}

@@ -1,0 +1,98 @@
+#include "cli/commands.h"
+#include "cli/options.h"
+
+#include "analysis/analysis.h"
+#include "output/file.h"
+
+#include <stdlib.h>
+
+static void print_help(void)
+{
+  puts("usage: delbm analyse DIR [--json FILE] [--tables]\n"
+       "\n"
+       "Reports what a run's discs did, from DIR/case.yaml and DIR/particles.csv, one figure a line:\n"
+       "\n"
+       "  one disc, free or in a stream  terminal velocity, drag, lift, Reynolds and Strouhal numbers   body.*\n"
+       "  two discs settling             times and speeds of drafting, kissing and tumbling             pair.*\n"
+       "  many discs settling            interface, sediment, concentration, mixing                     settling.*\n"
+       "\n"
+       "  --json FILE  also writes the figures, and the series of settling, to FILE\n"
+       "  --tables     also writes the series of settling to DIR/settling.csv (interface, sediment's surface, mixing\n"
+       "               index, mean height of five layers) and DIR/profile.csv (concentration by height)\n"
+       "  --help       this text");
+}
+
+struct request {
+  const char *directory;
+  const char *json; /* NULL: none */
+  bool tables;
+};
+
+static bool write_json(const struct analysis *analysis, const char *path, struct status *status)
+{
+  struct replacement file;
+  if (!replacement_begin(&file, path, status)) return false;
+  analysis_json(analysis, file.stream);
+  return replacement_commit(&file, status);
+}
+
+static bool write_table(const struct settling *settling, const char *directory, const char *name,
+                        void (*write)(const struct settling *, FILE *), struct status *status)
+{
+  char *path = file_join(directory, name, status);
+  struct replacement file;
+  bool written = path && replacement_begin(&file, path, status);
+  if (written) {
+    write(settling, file.stream);
+    written = replacement_commit(&file, status);
+  }
+  free(path);
+  return written;
+}
+
+static bool report(const struct analysis *analysis, const struct request *request, struct status *status)
+{
+  analysis_print(analysis, stdout);
+  if (request->json && !write_json(analysis, request->json, status)) return false;
+  if (!request->tables || !analysis->has_settling) return true;
+  return write_table(&analysis->settling, request->directory, "settling.csv", analysis_settling_csv, status) &&
+         write_table(&analysis->settling, request->directory, "profile.csv", analysis_profile_csv, status);
+}
+
+static int analyse_scene(const struct scene *scene, const struct request *request)
+{
+  struct status status;
+  struct analysis analysis;
+  char *table = file_join(request->directory, "particles.csv", &status);
+  bool ok = table && analysis_create(&analysis, scene, table, &status);
+  free(table);
+  if (!ok) return report_error(&status);
+  ok = report(&analysis, request, &status);
+  analysis_destroy(&analysis);
+  return ok ? DELBM_OK : report_error(&status);
+}
+
+int command_analyse(int argc, char **argv)
+{
+  enum { OPTION_JSON = OPTION_OWN, OPTION_TABLES };
+  static const struct option known[] = {{"json", required_argument, NULL, OPTION_JSON},
+                                        {"tables", no_argument, NULL, OPTION_TABLES},
+                                        {"help", no_argument, NULL, OPTION_HELP},
+                                        {0}};
+  struct request request = {0};
+  for (int option; (option = option_next(argc, argv, known)) != OPTION_END;) {
+    if (option == OPTION_HELP) print_help();
+    if (option == OPTION_HELP) return DELBM_OK;
+    if (option == OPTION_BAD) return DELBM_USAGE;
+    if (option == OPTION_JSON) request.json = optarg;
+    if (option == OPTION_TABLES) request.tables = true;
+  }
+  request.directory = option_operand(argc, argv, "DIR");
+  if (!request.directory) return DELBM_USAGE;
+  struct scene scene = {0};
+  const struct settings none = {0};
+  int code = case_read(&scene, request.directory, &none);
+  if (code == DELBM_OK) code = analyse_scene(&scene, &request);
+  scene_clear(&scene);
+  return code;
+}
