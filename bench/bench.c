@@ -8,6 +8,7 @@ const struct bench *bench_at(size_t index)
       {"sweep", "how fast is the fluid sweep, against a plain read-modify-write of its memory?", bench_sweep},
       {"step", "what does a step with discs cost, stage by stage, against one without?", bench_step},
       {"drag", "how does the drag of a square array depend on form, rates and viscosity?", bench_drag},
+      {"overlap", "how does the overlap area grow with distance, and how does the one by cells differ?", bench_overlap},
   };
   return index < sizeof all / sizeof all[0] ? &all[index] : NULL;
 }
