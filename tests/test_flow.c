@@ -91,6 +91,26 @@ Test(duct, what_enters_at_the_inlet_leaves_through_the_outlet)
   scene_clear(&scene);
 }
 
+/* The inlet sets the fluid in motion by a wave that runs to the outlet. What the outlet returns of it, the inlet sends
+ * back, and so on: after four times there and back the velocity is uniform only if most of it has gone out. */
+Test(duct, sound_leaves_through_the_outlet)
+{
+  const int nx = 400, ny = 3;
+  struct scene scene = scene_box(nx, ny, 0.01, SIDES_PERIODIC);
+  scene.domain.side[SIDE_LEFT] = (struct side){SIDE_INLET, {0.02, 0}};
+  scene.domain.side[SIDE_RIGHT].type = SIDE_OUTLET;
+  struct simulation *simulation = start(&scene);
+  advance(simulation, (int64_t)(8 * nx * sqrt(3)));
+  double *rho = malloc(sizeof(double) * nx * ny), *u = malloc(sizeof(double) * nx * ny);
+  simulation_fields(simulation, rho, u, NULL);
+  for (int x = 0; x < nx; x += 10) cr_expect(fabs(u[nx + x] / 0.02 - 1) < 0.02, "velocity at %d: %g", x, u[nx + x]);
+  for (int x = 0; x < nx; x += 10) cr_expect(fabs(rho[nx + x] - 1) < 0.002, "density at %d: %g", x, rho[nx + x]);
+  free(rho);
+  free(u);
+  simulation_destroy(simulation);
+  scene_clear(&scene);
+}
+
 /* Runs until the mean velocity changes by less than 1e-6 over 200 steps; K = F/(mu U). */
 static double square_array_drag(const struct scene *scene, double *reported)
 {

@@ -46,7 +46,7 @@ static void outlet_link(struct populations *p, bool periodic_x, int i, int gx, i
                                         : populations_slot(p, k, x + d2q9_ex[k], y + d2q9_ey[k]));
   const size_t from = before ? populations_slot(p, o, x, y) : populations_slot(p, i, x + ex, y + ey);
   const size_t to = before ? populations_slot(p, o, gx, gy) : populations_slot(p, i, gx + ex, gy + ey);
-  populations_set(p, to, populations_get(p, from) - boundary_outlet_hold * d2q9_weight[i] * excess);
+  populations_set(p, to, populations_get(p, from) - boundary_outlet_hold(nx, ny) * d2q9_weight[i] * excess);
 }
 
 /* The links of row y to the left (inward +1) or right (inward -1) side, with the positions of x = 0 in plane 0 of the

@@ -8,8 +8,8 @@
  *                density).
  *   periodic     what left on the other side. In y the addresses wrap by themselves (populations.h).
  *   outlet       zero gradient along the normal: what arrives is what the edge cell itself sends inwards, but for a
- *                tenth of the cell's excess density. That holds the mean pressure, which a bare zero gradient lets
- *                drift, and is weak enough to reflect little sound.
+ *                part of the cell's excess density. That holds the mean pressure, which a bare zero gradient lets
+ *                drift, and is weak enough to let sound out.
  *
  * Each row has passes of its own that touch only slots of that row's cells: rows may run in any order and on any
  * thread. The one exception is an outlet, whose ghosts are made from slots of other rows' cells: there all rows must be
@@ -20,8 +20,15 @@
 
 #include "fluid/populations.h"
 
-/* The part of an edge cell's excess density that an outlet takes away each step. */
-static const double boundary_outlet_hold = 0.1;
+/* The part of an edge cell's excess density that an outlet takes away each step, in a box of nx x ny cells. Sound that
+ * meets the outlet sees its zero gradient, which lets most of it out, only where its angular frequency is well above a
+ * third of this; below, the outlet holds the pressure and returns all of it. So the hold falls with the box, whose lowest
+ * tone has the angular frequency c_s pi/(2 L). */
+static inline double boundary_outlet_hold(int nx, int ny)
+{
+  const int longest = nx > ny ? nx : ny;
+  return longest > 5 ? 0.5 / longest : 0.1;
+}
 
 /* Fills the ghosts that row y reads in a step of parity 1. May be repeated before that step. */
 void boundary_before_row(struct populations *populations, const struct side side[SIDE_COUNT], int y);

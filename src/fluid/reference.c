@@ -97,7 +97,7 @@ static double streamed(const struct reference *r, const struct side side[SIDE_CO
   double excess = -1;
   for (int k = 0; k < Q; k++) excess += from[k];
   const bool outlet = ruling && ruling->type == SIDE_OUTLET;
-  return from[i] - (outlet ? boundary_outlet_hold * d2q9_weight[i] * excess : 0);
+  return from[i] - (outlet ? boundary_outlet_hold(r->nx, r->ny) * d2q9_weight[i] * excess : 0);
 }
 
 void reference_step(struct reference *r, const struct side side[SIDE_COUNT], const struct sweep_constants *constants,
