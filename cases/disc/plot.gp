@@ -2,7 +2,7 @@
 if (ARGC != 1) { print "usage: gnuplot -c cases/disc/plot.gp DIR"; exit status 2 }
 reference = system("dirname '" . ARG0 . "'") . "/reference.csv"
 figures = ARG1 . "/figures.txt"
-pairs(y) = sprintf("< awk '$2 == \"body.reynolds\" {re = $3} $2 == \"body.%s\" {print re, $3}' '%s' | sort -n", y, figures)
+pairs(y) = sprintf("< awk '$1 ~ /^nu/ && $2 == \"body.reynolds\" {re = $3} $1 ~ /^nu/ && $2 == \"body.%s\" {print re, $3}' '%s' | sort -n", y, figures)
 of(kind) = sprintf("< awk -F, '$1 == \"%s\" {print $2, $3}' '%s'", kind, reference)
 
 set terminal pngcairo size 760, 480 font "sans,11"
