@@ -1,0 +1,145 @@
+/* The paper's cases, smaller and shorter, from outside: what cases/reproduce does at full size. Each holds the program to
+ * published or independent values (cases/NAME/reference.csv). */
+#include <criterion/criterion.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+static char folder[] = "/tmp/delbm-test-XXXXXX";
+
+static void enter_folder(void)
+{
+  cr_assert(mkdtemp(folder) && chdir(folder) == 0);
+}
+
+static void leave_folder(void)
+{
+  char command[64];
+  snprintf(command, sizeof command, "rm -rf %s", folder);
+  cr_assert_eq(chdir("/") + system(command), 0);
+}
+
+TestSuite(validation, .init = enter_folder, .fini = leave_folder, .timeout = 900);
+
+/* Runs a case of the source with further settings, results into folder `out`. */
+static void run(const char *out, const char *name, const char *settings)
+{
+  char command[1024];
+  snprintf(command, sizeof command, "%s run %s/../cases/%s --quiet --out %s --set output.frames.every=0 %s >/dev/null",
+           DELBM, TEST_DIR, name, out, settings);
+  cr_assert_eq(system(command), 0, "%s", command);
+}
+
+/* A figure of `delbm analyse`; NAN where it has none of that name. */
+static double figure(const char *out, const char *name)
+{
+  char command[256], line[256], key[64];
+  double value, found = NAN;
+  snprintf(command, sizeof command, "%s analyse %s", DELBM, out);
+  FILE *report = popen(command, "r");
+  cr_assert(report);
+  while (fgets(line, sizeof line, report))
+    if (sscanf(line, "%63s %lf", key, &value) == 2 && strcmp(key, name) == 0) found = value;
+  cr_assert_eq(pclose(report), 0);
+  return found;
+}
+
+static void expect_near(const char *what, double value, double reference, double percent)
+{
+  cr_expect(fabs(value / reference - 1) < percent / 100, "%s: %g, %+.2f %% off %g", what, value,
+            100 * (value / reference - 1), reference);
+}
+
+/* Figures 10 and 11: a step is 5e-4 s. The start is that of the run whose course is published (cases/dkt/README.md). */
+Test(validation, two_discs_draft_kiss_and_tumble_when_they_should)
+{
+  static const char *const forms[] = {"unified", "owen"};
+  for (int k = 0; k < 2; k++) {
+    char settings[256];
+    snprintf(settings, sizeof settings,
+             "--set coupling.form=%s --set 'particles.discs.0.position=[100,720]' --set "
+             "'particles.discs.1.position=[97,680]' --set run.steps=4500 --set output.every=10",
+             forms[k]);
+    run(forms[k], "dkt", settings);
+    expect_near("drafting", 5e-4 * figure(forms[k], "pair.draft_time"), 1.12, 5);
+    expect_near("its velocity", 20 * figure(forms[k], "pair.draft_speed"), -1.704, 5);
+    const double kiss = 5e-4 * figure(forms[k], "pair.kiss_time");
+    cr_expect(kiss > 1.15 * 0.95 && kiss < 1.36 * 1.05, "%s: kissing at %g s", forms[k], kiss);
+    expect_near("tumbling", 5e-4 * figure(forms[k], "pair.tumble_time"), 1.85, 5);
+  }
+}
+
+/* Figures 7 and 8: what side walls add is proportional to the part of the width that the disc takes; without it, the drag
+ * of a fixed cylinder at the same Reynolds number, 1.7867 at 26 and 1.8478 (interpolated) at 24. */
+Test(validation, a_settling_disc_has_the_drag_of_a_cylinder)
+{
+  double excess[2];
+  for (int k = 0; k < 2; k++) {
+    const char *out = k ? "wide" : "narrow";
+    run(out, "disc",
+        k ? "--set 'domain.size=[600,1000]' --set 'particles.discs.0.position=[300.3,900]' --set run.steps=9000"
+          : "--set 'domain.size=[300,1000]' --set 'particles.discs.0.position=[150.3,900]' --set run.steps=9000");
+    const double re = figure(out, "body.reynolds");
+    const double cylinder = exp(log(2.0001) + log(1.7867 / 2.0001) * log(re / 20) / log(26.0 / 20));
+    cr_assert(re > 20 && re < 27, "Re %g", re);
+    excess[k] = figure(out, "body.drag") / cylinder;
+  }
+  expect_near("drag over a cylinder's, in unbounded water", 2 * excess[1] - excess[0], 1, 5);
+}
+
+/* Figure 9: drag and lift of R = 10 in a box of 40 R, less what that box adds: proportional to 1/L, so as much as R = 5
+ * loses from 40 R to 80 R, twice. */
+Test(validation, a_spinning_disc_is_lifted_and_dragged_as_computed_otherwise)
+{
+  static const char *const boxes[] = {"coarse", "large", "fine"};
+  static const char *const settings[] = {
+      "--set 'domain.size=[200,200]' --set 'particles.discs.0.position=[80,100]' --set run.steps=16000",
+      "--set 'domain.size=[400,400]' --set 'particles.discs.0.position=[160,200]' --set run.steps=30000",
+      "--set 'domain.size=[400,400]' --set 'particles.discs.0.position=[160,200]' --set run.steps=30000 "
+      "--set particles.discs.0.radius=10 --set particles.discs.0.spin=0.002 --set fluid.viscosity=0.02"};
+  double drag[3], lift[3];
+  for (int k = 0; k < 3; k++) {
+    run(boxes[k], "spin", settings[k]);
+    drag[k] = figure(boxes[k], "body.drag");
+    lift[k] = -figure(boxes[k], "body.lift");
+  }
+  expect_near("C_D", drag[2] + 2 * (drag[1] - drag[0]), 1.8192, 3);
+  expect_near("C_L", lift[2] + 2 * (lift[1] - lift[0]), 2.7316, 3);
+}
+
+/* Figures 12 to 15, 300 discs: Kynch's first mode, one jump between suspension and sediment. */
+Test(validation, a_crowd_settles_with_a_straight_interface_onto_a_bed_that_takes_what_arrives)
+{
+  run("crowd", "settling", "--set 'domain.size=[300,400]' --set run.steps=34000 --set output.every=250");
+  expect_near("R^2", figure("crowd", "settling.interface_r2"), 1, 1);
+  expect_near("concentration at the start", figure("crowd", "settling.concentration"), M_PI / 16, 0.01);
+  expect_near("rise of the sediment's surface",
+              figure("crowd", "settling.front_speed") / figure("crowd", "settling.front_speed_kynch"), 1, 7);
+  const double bed = figure("crowd", "settling.bed");
+  /* that of the upper 100 cells of the full bed, on which little weighs: 0.66 to 0.74 */
+  cr_expect(bed > 0.65 && bed < 0.75, "concentration of the bed: %g", bed);
+}
+
+/* Figure 2: (11) in the limit of small overlap. */
+Test(validation, fitted_overlap_areas_have_the_factor_of_their_radii)
+{
+  char command[256];
+  snprintf(command, sizeof command, "%s bench overlap --quick --json overlap.json >/dev/null", DELBM);
+  cr_assert_eq(system(command), 0);
+  char *text = calloc(1, 1 << 16);
+  FILE *file = fopen("overlap.json", "r");
+  cr_assert(file && fread(text, 1, (1 << 16) - 1, file) > 0);
+  fclose(file);
+  int ratios = 0;
+  double beta, factor, limit;
+  for (const char *at = text; (at = strstr(at, "{\"beta\"")); at++, ratios++) {
+    cr_assert_eq(sscanf(at, "{\"beta\": %lf, \"factor\": %lf, \"limit\": %lf", &beta, &factor, &limit), 3);
+    expect_near("factor", factor, limit, 1);
+  }
+  cr_expect_eq(ratios, 6);
+  free(text);
+}
