@@ -15,7 +15,7 @@ set key top left
 set title "Fig. 9: lift, Re 20"
 set ylabel "C_L"
 plot theirs(3, "independent") with lines linewidth 2 linecolor rgb "#2170be" title "independent computation", \
-     theirs(3, "Ingham") with points pointtype 4 linecolor rgb "black" title "Ingham & Tang 1990", \
+     theirs(3, "Ingham") with points pointtype 4 linecolor rgb "black" title "Ingham and Tang 1990", \
      theirs(3, "Badr") with points pointtype 8 linecolor rgb "black" title "Badr et al. 1989", \
      theirs(3, "Chung") with points pointtype 2 linecolor rgb "black" title "Chung 2006", \
      ours("lift") using 1:(-column(2)) with points pointtype 7 pointsize 1.2 linecolor rgb "#c2481a" title "this program, 200 R"
@@ -23,7 +23,7 @@ set title "Fig. 9: drag, Re 20"
 set ylabel "C_D"
 set key bottom left
 plot theirs(2, "independent") with lines linewidth 2 linecolor rgb "#2170be" title "independent computation", \
-     theirs(2, "Ingham") with points pointtype 4 linecolor rgb "black" title "Ingham & Tang 1990", \
+     theirs(2, "Ingham") with points pointtype 4 linecolor rgb "black" title "Ingham and Tang 1990", \
      theirs(2, "Badr") with points pointtype 8 linecolor rgb "black" title "Badr et al. 1989", \
      theirs(2, "Chung") with points pointtype 2 linecolor rgb "black" title "Chung 2006", \
      theirs(2, "Stojkovic") with points pointtype 6 linecolor rgb "black" title "Stojkovic et al. 2002", \
