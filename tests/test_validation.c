@@ -74,7 +74,7 @@ Test(validation, two_discs_draft_kiss_and_tumble_when_they_should)
 }
 
 /* Figures 7 and 8: what side walls add is proportional to the part of the width that the disc takes; without it, the drag
- * of a fixed cylinder at the same Reynolds number, 1.7867 at 26 and 1.8478 (interpolated) at 24. */
+ * of a fixed cylinder at the same Reynolds number, between 2.0001 at 20 and 1.7867 at 26. */
 Test(validation, a_settling_disc_has_the_drag_of_a_cylinder)
 {
   double excess[2];
