@@ -198,7 +198,7 @@ static struct summary some_summary(const struct scene *scene)
       .scene = scene,
       .steps = 50,
       .seconds = 2,
-      .report = {.threads = 3, .kernel = "plain", .plan = "16", .mass_drift = 0.5, .momentum_drift = NAN}};
+      .report = {.threads = 3, .kernel = "plain", .plan = "16", .binding = "unbound", .mass_drift = 0.5, .momentum_drift = NAN}};
 }
 
 static char *run_json(const struct summary *summary)
@@ -237,7 +237,7 @@ Test(summary, run_json_holds_the_figures)
   char *json = run_json(&summary);
   assert_starts(json, "{\n  \"status\": \"done\",\n  \"steps\": 50,\n");
   assert_holds(json, "\n  \"mlups\": 0.0050000000000000001,\n");
-  assert_holds(json, "\n  \"threads\": 3,\n  \"kernel\": \"plain\",\n  \"plan\": \"16\",\n  \"precision\": "
+  assert_holds(json, "\n  \"threads\": 3,\n  \"binding\": \"unbound\",\n  \"kernel\": \"plain\",\n  \"plan\": \"16\",\n  \"precision\": "
                      "\"double\",\n  \"stages\": {\n");
   assert_holds(json, "\n    \"output\": 0.25\n  },\n  \"mass_drift\": 0.5,\n");
   assert_holds(json, "\n  \"title\": \"Title\"\n}\n");

@@ -72,6 +72,18 @@ static const char *const crowd = "title: crowd\n"
                                  "run: {steps: 300}\n"
                                  "output: {every: 50}\n";
 
+Test(program, says_how_threads_are_bound)
+{
+  write_file("box.yaml", "domain: {size: [80, 80]}\nfluid: {viscosity: 0.05}\nrun: {steps: 4}\n");
+  cr_expect_eq(
+      shell("OMP_NUM_THREADS=1 OMP_PLACES=cores OMP_PROC_BIND=close %s run box.yaml --out b 2>err >/dev/null", DELBM),
+      0);
+  cr_expect(contains("b/run.json", "\"binding\": \"close over "));
+  cr_expect(contains("err", "1 threads, close over "));
+  cr_expect_eq(shell("OMP_PROC_BIND=false %s info box.yaml >info.txt", DELBM), 0);
+  cr_expect(contains("info.txt", "(unbound)"));
+}
+
 Test(program, particles_csv_has_the_same_bits_for_any_number_of_threads)
 {
   static const int threads[] = {1, 2, 3, 4, 7};

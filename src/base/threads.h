@@ -8,4 +8,8 @@
  * Results are the same with any number. */
 int threads_for(int64_t cells);
 
+/* How OMP_PROC_BIND and OMP_PLACES have bound threads to processors, in words: "unbound", or "close over 2 places". */
+enum { THREADS_TEXT = 48 };
+void threads_binding(char text[THREADS_TEXT]);
+
 #endif

@@ -193,8 +193,10 @@ static int print_case(const struct scene *scene)
   print_speeds(scene);
   if (plan.exchange) print_discs(scene);
   print_contacts(scene, &plan);
-  printf("run          %" PRId64 " steps, %d threads, kernel %s\n", scene->run.steps, threads_for(scene_cells(scene)),
-         kernel->name);
+  char binding[THREADS_TEXT];
+  threads_binding(binding);
+  printf("run          %" PRId64 " steps, %d threads (%s), kernel %s\n", scene->run.steps,
+         threads_for(scene_cells(scene)), binding, kernel->name);
   print_plan(scene);
   print_memory(scene);
   print_stages(scene, &plan);

@@ -188,10 +188,19 @@ static void conclude(struct run *run)
   if (run->outcome != OUTCOME_DONE) report_error(run->status);
 }
 
+/* What the run's speed depends on. */
+static void announce(const struct scene *scene)
+{
+  char binding[THREADS_TEXT];
+  threads_binding(binding);
+  fprintf(stderr, "delbm: %d threads, %s\n", threads_for(scene_cells(scene)), binding);
+}
+
 static void simulate(struct run *run, bool quiet)
 {
   const int *size = run->scene->domain.size;
   enum progress_style style = quiet ? PROGRESS_NONE : progress_style(stderr);
+  if (!quiet) announce(run->scene);
   listen_to_signals();
   run->start = clock_now();
   progress_start(&run->progress, style, stderr, run->scene->run.steps, (double)size[0] * size[1]);

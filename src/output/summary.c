@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "output/file.h"
 
+#include <assert.h>
 #include <inttypes.h>
 #include <math.h>
 #include <string.h>
@@ -20,7 +21,7 @@ struct figure {
   double real;
 };
 
-enum { FIGURES_MAX = 16 + STAGE_COUNT };
+enum { FIGURES_MAX = 24 + STAGE_COUNT };
 
 struct figures {
   size_t count;
@@ -35,6 +36,7 @@ static const char *outcome_name(enum outcome outcome)
 
 static struct figure *add(struct figures *figures, const char *name, enum figure_kind kind)
 {
+  assert(figures->count < FIGURES_MAX);
   struct figure *figure = &figures->items[figures->count++];
   *figure = (struct figure){.name = name, .kind = kind};
   return figure;
@@ -77,6 +79,7 @@ static struct figures figures_of(const struct summary *summary)
   add_real(&figures, "seconds", summary->seconds);
   add_real(&figures, "mlups", mlups(summary));
   add_integer(&figures, "threads", report->threads);
+  add_text(&figures, "binding", report->binding)->json_only = true;
   add_text(&figures, "kernel", report->kernel);
   add_text(&figures, "plan", report->plan);
   add_text(&figures, "precision", single ? "single" : "double");

@@ -283,7 +283,8 @@ static void finish_disc(const struct motion *m, struct exchange *e, struct discs
 
 static bool too_fast(const struct discs *d, size_t i)
 {
-  return !(hypot(d->vx[i], d->vy[i]) + fabs(d->omega[i]) * d->radius[i] <= diagnostics_fastest);
+  const double left = diagnostics_fastest - fabs(d->omega[i]) * d->radius[i]; /* for the centre; not finite: too fast */
+  return !(left >= 0 && d->vx[i] * d->vx[i] + d->vy[i] * d->vy[i] <= left * left);
 }
 
 void stage_contact(struct motion *m, const struct occupation *o, struct exchange *e, struct discs *d, int64_t step,

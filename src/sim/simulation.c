@@ -276,4 +276,5 @@ void simulation_report(struct simulation *s, struct simulation_report *report)
       .max_mach = s->max_mach,
       .max_substeps = s->plan.exchange ? s->motion.most_substeps : 1};
   tuning_text(&s->tuning, report->plan);
+  threads_binding(report->binding);
 }

@@ -4,6 +4,7 @@
 #define DELBM_SIM_SIMULATION_H
 
 #include "base/clock.h"
+#include "base/threads.h"
 #include "scene/scene.h"
 #include "solid/discs.h"
 
@@ -41,7 +42,8 @@ struct simulation_report {
                                forces, over the fluid's mass; NAN where walls, inlets or outlets exchange momentum */
   double max_mach;       /* largest seen at the looks for divergence */
   char plan[32];         /* blocking of the sweep in time: off, its depth, or depth x width */
-  int max_substeps;      /* most sub-steps that a step has taken */
+  char binding[THREADS_TEXT]; /* of threads to processors */
+  int max_substeps;           /* most sub-steps that a step has taken */
 };
 void simulation_report(struct simulation *simulation, struct simulation_report *report);
 
