@@ -323,7 +323,7 @@ static char *lines_of_progress(enum progress_style style, int chunk)
   size_t length;
   FILE *stream = open_memstream(&text, &length);
   struct progress progress;
-  progress_start(&progress, style, stream, 1000, 1e4);
+  progress_start(&progress, style, stream, 0, 1000, 1e4);
   for (int step = chunk; step <= 1000; step += chunk) progress_update(&progress, step);
   progress_finish(&progress, 1000);
   fclose(stream);

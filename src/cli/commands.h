@@ -4,6 +4,7 @@
 #define DELBM_CLI_COMMANDS_H
 
 int command_run(int argc, char **argv);
+int command_resume(int argc, char **argv);
 int command_info(int argc, char **argv);
 int command_analyse(int argc, char **argv);
 int command_bench(int argc, char **argv);

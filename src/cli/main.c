@@ -17,6 +17,7 @@ struct command {
 
 static const struct command commands[] = {
     {"run", command_run, "simulate a case"},
+    {"resume", command_resume, "go on with a run from its last checkpoint"},
     {"info", command_info, "show a case and the plan of its run"},
     {"analyse", command_analyse, "report what the discs of a finished run did"},
     {"bench", command_bench, "measure speed on this machine"},
@@ -35,7 +36,8 @@ static int print_help(void)
   for (size_t k = 0; k < COMMAND_COUNT; k++) printf("  %-8s %s\n", commands[k].name, commands[k].purpose);
   puts("\n"
        "The number of threads is that of OMP_NUM_THREADS; it does not change results.\n"
-       "Exit codes: 0 done, 1 run failed (diverged), 2 usage, 3 invalid case, 4 input/output, 130 interrupted.");
+       "Exit codes: 0 done, 1 run failed (diverged), 2 usage, 3 invalid case, 4 input/output,\n"
+       "130 or 143 interrupted by SIGINT or SIGTERM.");
   return DELBM_OK;
 }
 
@@ -100,5 +102,6 @@ int main(int argc, char **argv)
   limit_spinning(argv);
   if (!hold_standard_streams()) return DELBM_IO;
   signal(SIGPIPE, SIG_IGN); /* a closed pipe is an error like any other: check_stdout reports it */
+  signal(SIGXFSZ, SIG_IGN); /* and so is a file that may not grow: the write that fails does */
   return check_stdout(dispatch(argc, argv));
 }

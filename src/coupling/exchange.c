@@ -56,6 +56,14 @@ void exchange_destroy(struct exchange *e)
   *e = (struct exchange){0};
 }
 
+bool exchange_store(struct exchange *e, size_t discs, struct store *store, struct status *status)
+{
+  const size_t bytes = 3 * discs * sizeof(double);
+  return store_mark(store, "exchange", status) && store_bytes(store, &e->has_last, sizeof e->has_last, status) &&
+         (!e->last || store_bytes(store, e->last, bytes, status)) &&
+         (!e->memory || store_bytes(store, e->memory, bytes, status));
+}
+
 /* What the sweep found of a disc, row by row from the lowest; with the force of the coming step, and b = 2 share. */
 static struct gathered add_up(const struct occupation *o, const struct sweep_constants *c, size_t disc)
 {

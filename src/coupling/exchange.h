@@ -62,6 +62,9 @@ bool exchange_create(struct exchange *exchange, const struct scene *scene, const
                      struct status *status);
 void exchange_destroy(struct exchange *exchange);
 
+/* Saves or restores what a step leaves to the next, for so many discs; not the sums, which follow from the fluid. */
+bool exchange_store(struct exchange *exchange, size_t discs, struct store *store, struct status *status);
+
 /* Adds up and solves for all discs; called by all threads of a parallel region or outside of one. `constants` are those
  * of the coming sweep. Fails when A cannot be inverted: a disc too light and too small for its cells. */
 void stage_exchange(struct exchange *exchange, const struct sweep_constants *constants,

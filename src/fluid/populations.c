@@ -66,6 +66,19 @@ void populations_destroy(struct populations *p)
   p->block = NULL;
 }
 
+bool populations_store(struct populations *p, struct store *store, struct status *status)
+{
+  if (!store_mark(store, "populations", status) || !store_bytes(store, &p->parity, sizeof p->parity, status))
+    return false;
+  const size_t size = value_size(p->precision);
+  for (int i = 0; i < Q; i++)
+    for (int y = 0; y < p->ny; y++) {
+      char *row = (char *)p->block + populations_slot(p, i, 0, y) * size;
+      if (!store_bytes(store, row, (size_t)p->nx * size, status)) return false;
+    }
+  return true;
+}
+
 void populations_cells(const struct populations *p, int x, int y, void *a[Q])
 {
   for (int i = 0; i < Q; i++) a[i] = (char *)p->block + populations_source(p, i, x, y) * value_size(p->precision);

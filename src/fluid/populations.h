@@ -17,7 +17,7 @@
 #ifndef DELBM_FLUID_POPULATIONS_H
 #define DELBM_FLUID_POPULATIONS_H
 
-#include "base/status.h"
+#include "base/store.h"
 #include "lattice/d2q9.h"
 #include "scene/scene.h"
 
@@ -38,6 +38,9 @@ struct populations {
 bool populations_create(struct populations *populations, int nx, int ny, bool periodic_y, enum precision precision,
                         struct status *status);
 void populations_destroy(struct populations *populations);
+
+/* Saves or restores the populations and their parity. Ghosts follow from them (boundary.h) and are left out. */
+bool populations_store(struct populations *populations, struct store *store, struct status *status);
 
 /* Bytes that populations_create would map. */
 size_t populations_bytes(int nx, int ny, enum precision precision);

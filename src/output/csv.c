@@ -94,22 +94,55 @@ static bool write_header(struct csv *csv, struct status *status)
   return write_text(csv, status);
 }
 
-bool csv_open(struct csv **csv, const char *path, struct status *status)
+/* Opens the file with what is in it. */
+static bool open_file(struct csv **csv, const char *path, int flags, struct status *status)
 {
   *csv = memory_allocate(1, sizeof **csv, "the table of discs", status);
   if (!*csv) return false;
-  (*csv)->descriptor = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0666);
+  (*csv)->descriptor = open(path, O_WRONLY | O_APPEND | O_CLOEXEC | flags, 0666);
   if ((*csv)->descriptor < 0) {
-    file_fail(status, "create", path, errno);
+    file_fail(status, flags & O_CREAT ? "create" : "open", path, errno);
     free(*csv);
     *csv = NULL;
     return false;
   }
   (*csv)->path = strdup(path);
-  bool opened = (*csv)->path ? write_header(*csv, status) : file_fail(status, "create", path, ENOMEM);
+  return (*csv)->path || file_fail(status, "open", path, ENOMEM);
+}
+
+static bool close_unless(bool good, struct csv **csv)
+{
   struct status ignored;
-  if (!opened) csv_close(csv, &ignored);
-  return opened;
+  if (!good) csv_close(csv, &ignored);
+  return good;
+}
+
+bool csv_open(struct csv **csv, const char *path, struct status *status)
+{
+  return close_unless(open_file(csv, path, O_CREAT | O_TRUNC, status) && write_header(*csv, status), csv);
+}
+
+/* Cuts the file to a length that it must have. */
+static bool cut_back(struct csv *csv, int64_t length, struct status *status)
+{
+  const off_t end = lseek(csv->descriptor, 0, SEEK_END);
+  if (end < 0) return file_fail(status, "read", csv->path, errno);
+  if (end < length)
+    return status_fail(status, DELBM_IO, "%s has %lld bytes, fewer than the %lld at the checkpoint: it was changed",
+                       csv->path, (long long)end, (long long)length);
+  csv->size = length;
+  return ftruncate(csv->descriptor, length) == 0 || file_fail(status, "write", csv->path, errno);
+}
+
+bool csv_reopen(struct csv **csv, const char *path, int64_t length, struct status *status)
+{
+  return close_unless(open_file(csv, path, 0, status) && cut_back(*csv, length, status), csv);
+}
+
+bool csv_sync(struct csv *csv, int64_t *length, struct status *status)
+{
+  *length = csv->size;
+  return file_sync(csv->descriptor, csv->path, status);
 }
 
 /* Most discs touch nothing, so that a plain 0 is by far the most frequent number. */

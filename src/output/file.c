@@ -3,6 +3,7 @@
 #include "base/memory.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -68,29 +69,80 @@ bool replacement_begin(struct replacement *file, const char *path, struct status
   return false;
 }
 
-bool replacement_commit(struct replacement *file, struct status *status)
+bool file_sync(int descriptor, const char *path, struct status *status)
+{
+  /* EINVAL: what cannot be synchronised (a pipe, a device) has nothing to lose */
+  return fsync(descriptor) == 0 || errno == EINVAL || file_fail(status, "write", path, errno);
+}
+
+static bool sync_directory(const char *path, struct status *status)
+{
+  const int descriptor = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return file_fail(status, "open folder", path, errno);
+  const bool synced = file_sync(descriptor, path, status);
+  close(descriptor);
+  return synced;
+}
+
+/* Releases the paths of a replacement that has ended. */
+static void release(struct replacement *file)
+{
+  free(file->temporary);
+  free(file->path);
+}
+
+/* Closes and removes the file as far as it was written; returns false. */
+static bool discard(struct replacement *file)
+{
+  fclose(file->stream);
+  unlink(file->temporary);
+  return false;
+}
+
+static bool commit(struct replacement *file, bool durably, struct status *status)
 {
   errno = 0;
-  bool written = !ferror(file->stream) && fflush(file->stream) == 0;
-  if (!written) {
+  if (ferror(file->stream) || fflush(file->stream) != 0) {
     file_fail(status, "write", file->path, errno);
-    replacement_abandon(file);
-    return false;
+    return discard(file);
   }
-  bool moved = fclose(file->stream) == 0 && rename(file->temporary, file->path) == 0;
+  if (durably && !file_sync(fileno(file->stream), file->path, status)) return discard(file);
+  const bool moved = fclose(file->stream) == 0 && rename(file->temporary, file->path) == 0;
   if (!moved) {
     file_fail(status, "write", file->path, errno);
     unlink(file->temporary);
   }
-  free(file->temporary);
-  free(file->path);
+  return moved;
+}
+
+bool replacement_commit(struct replacement *file, struct status *status)
+{
+  const bool moved = commit(file, false, status);
+  release(file);
+  return moved;
+}
+
+/* The folder that a path lies in. */
+static bool sync_parent(char *path, struct status *status)
+{
+  char *slash = strrchr(path, '/');
+  if (!slash) return sync_directory(".", status);
+  if (slash == path) return sync_directory("/", status);
+  *slash = '\0';
+  const bool synced = sync_directory(path, status);
+  *slash = '/';
+  return synced;
+}
+
+bool replacement_commit_durably(struct replacement *file, struct status *status)
+{
+  const bool moved = commit(file, true, status) && sync_parent(file->path, status);
+  release(file);
   return moved;
 }
 
 void replacement_abandon(struct replacement *file)
 {
-  fclose(file->stream);
-  unlink(file->temporary);
-  free(file->temporary);
-  free(file->path);
+  discard(file);
+  release(file);
 }

@@ -22,6 +22,9 @@ char *file_join(const char *directory, const char *name, struct status *status);
 /* Makes a folder and those above it. One that exists is fine. */
 bool file_make_directory(const char *path, struct status *status);
 
+/* Forces what was written to a file to the disk. */
+bool file_sync(int descriptor, const char *path, struct status *status);
+
 /* Removes a file. One that does not exist is fine. */
 bool file_remove(const char *path, struct status *status);
 
@@ -29,6 +32,8 @@ bool file_remove(const char *path, struct status *status);
  * abandon ends the replacement; after a failed commit the file that was there before still stands. */
 bool replacement_begin(struct replacement *file, const char *path, struct status *status);
 bool replacement_commit(struct replacement *file, struct status *status);
+/* The same, forced to the disk before and after the move: neither a crash of the machine leaves half a file. */
+bool replacement_commit_durably(struct replacement *file, struct status *status);
 void replacement_abandon(struct replacement *file);
 
 #endif

@@ -42,7 +42,7 @@ static double fraction_done(const struct progress *progress, int64_t step)
 static void format_figures(const struct progress *progress, int64_t step, double now, char text[LINE_MAX_LENGTH])
 {
   double elapsed = now - progress->start;
-  double rate = elapsed > 0 ? (double)step / elapsed : 0, mlups = rate * progress->cells * 1e-6;
+  double rate = elapsed > 0 ? (double)(step - progress->first) / elapsed : 0, mlups = rate * progress->cells * 1e-6;
   bool ended = step >= progress->steps;
   char time[PROGRESS_TIME];
   progress_time(time, ended ? elapsed : (double)(progress->steps - step) / rate);
@@ -88,10 +88,12 @@ static int quarter(const struct progress *progress, int64_t step)
   return (int)(4 * fraction_done(progress, step));
 }
 
-void progress_start(struct progress *progress, enum progress_style style, FILE *stream, int64_t steps, double cells)
+void progress_start(struct progress *progress, enum progress_style style, FILE *stream, int64_t first, int64_t steps,
+                    double cells)
 {
-  *progress = (struct progress){.style = style, .stream = stream, .steps = steps, .cells = cells, .start = clock_now()};
-  if (style != PROGRESS_NONE) show(progress, 0, progress->start);
+  *progress = (struct progress){
+      .style = style, .stream = stream, .first = first, .steps = steps, .cells = cells, .start = clock_now()};
+  if (style != PROGRESS_NONE) show(progress, first, progress->start);
 }
 
 void progress_update(struct progress *progress, int64_t step)

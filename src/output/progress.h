@@ -11,6 +11,7 @@ enum progress_style { PROGRESS_NONE, PROGRESS_LINES, PROGRESS_BAR };
 struct progress {
   enum progress_style style;
   FILE *stream;
+  int64_t first; /* step from which this run began */
   int64_t steps; /* of the whole run */
   double cells;  /* of the domain */
   double start;  /* clock, s */
@@ -21,8 +22,9 @@ struct progress {
 /* The style that suits the stream. */
 enum progress_style progress_style(FILE *stream);
 
-/* Starts the clock and shows step 0. */
-void progress_start(struct progress *progress, enum progress_style style, FILE *stream, int64_t steps, double cells);
+/* Starts the clock and shows the first step. */
+void progress_start(struct progress *progress, enum progress_style style, FILE *stream, int64_t first, int64_t steps,
+                    double cells);
 
 /* Shows the step when it is time to: the bar at most ten times a second, a line every 10 s and at each quarter. */
 void progress_update(struct progress *progress, int64_t step);

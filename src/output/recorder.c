@@ -1,6 +1,7 @@
 #include "output/recorder.h"
 
 #include "base/memory.h"
+#include "output/checkpoint.h"
 #include "output/csv.h"
 #include "output/file.h"
 #include "output/picture.h"
@@ -9,9 +10,11 @@
 #include <ctype.h>
 #include <dirent.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 /* What is recorded at regular steps. */
@@ -20,13 +23,19 @@ struct series {
   int64_t recorded; /* the step last recorded, -1 before the first */
 };
 
+enum { CHECKPOINTS = 2 };
+
 struct recorder {
   const struct scene *scene;
-  char *case_path, *table_path, *frames_path, *summary_path;
+  char *case_path, *table_path, *frames_path, *summary_path, *checkpoint_path[CHECKPOINTS];
+  int lock;          /* descriptor of the folder; -1: not open */
   struct csv *table; /* particles.csv */
-  struct series rows, frames;
-  double *ux, *uy; /* fields of a frame; NULL without frames */
-  double seconds;
+  struct series rows, frames, checkpoints;
+  int next_checkpoint;  /* which of the two is written next */
+  uint32_t fingerprint; /* of the case */
+  double *ux, *uy;      /* fields of a frame; NULL without frames */
+  double start;         /* clock at step 0 of a run that was never interrupted */
+  double seconds;       /* spent on output */
 };
 
 static bool series_is_due(const struct series *series, int64_t step, bool last)
@@ -56,22 +65,40 @@ static bool remove_named(const char *directory, const char *name, struct status 
   return removed;
 }
 
-static bool remove_frames(const char *directory, struct status *status)
+/* Removes the frames from a step on. */
+static bool remove_frames(const char *directory, int64_t step, struct status *status)
 {
   DIR *listing = opendir(directory);
   if (!listing) return errno == ENOENT || file_fail(status, "read folder", directory, errno);
   bool removed = true;
   for (struct dirent *entry; removed && (entry = readdir(listing));)
-    if (is_frame(entry->d_name)) removed = remove_named(directory, entry->d_name, status);
+    if (is_frame(entry->d_name) && strtoll(entry->d_name, NULL, 10) >= step)
+      removed = remove_named(directory, entry->d_name, status);
   closedir(listing);
   return removed;
+}
+
+static bool remove_checkpoints(const struct recorder *recorder, struct status *status)
+{
+  for (int k = 0; k < CHECKPOINTS; k++)
+    if (!file_remove(recorder->checkpoint_path[k], status)) return false;
+  return true;
 }
 
 static bool remove_earlier_run(const struct recorder *recorder, bool *replaced, struct status *status)
 {
   *replaced = access(recorder->summary_path, F_OK) == 0 || access(recorder->table_path, F_OK) == 0;
-  return file_remove(recorder->summary_path, status) && file_remove(recorder->table_path, status) &&
-         remove_frames(recorder->frames_path, status);
+  return remove_checkpoints(recorder, status) && file_remove(recorder->summary_path, status) &&
+         file_remove(recorder->table_path, status) && remove_frames(recorder->frames_path, 0, status);
+}
+
+/* Two runs in one folder would write over each other. Where a file system knows no locks, none is held. */
+static bool lock_folder(struct recorder *recorder, const char *directory, struct status *status)
+{
+  recorder->lock = open(directory, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (recorder->lock < 0) return file_fail(status, "open folder", directory, errno);
+  if (flock(recorder->lock, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return true;
+  return status_fail(status, DELBM_IO, "another delbm is running in %s", directory);
 }
 
 static bool write_case(const struct recorder *recorder, struct status *status)
@@ -111,26 +138,24 @@ static bool prepare_frames(const struct recorder *recorder, struct status *statu
 
 static bool prepare_paths(struct recorder *recorder, const char *directory, struct status *status)
 {
-  recorder->case_path = file_join(directory, "case.yaml", status);
-  recorder->table_path = file_join(directory, "particles.csv", status);
-  recorder->frames_path = file_join(directory, "frames", status);
-  recorder->summary_path = file_join(directory, "run.json", status);
-  return recorder->case_path && recorder->table_path && recorder->frames_path && recorder->summary_path;
+  const struct {
+    char **path;
+    const char *name;
+  } paths[] = {{&recorder->case_path, "case.yaml"},
+               {&recorder->table_path, "particles.csv"},
+               {&recorder->frames_path, "frames"},
+               {&recorder->summary_path, "run.json"},
+               {&recorder->checkpoint_path[0], "checkpoint.0"},
+               {&recorder->checkpoint_path[1], "checkpoint.1"}};
+  for (size_t k = 0; k < sizeof paths / sizeof paths[0]; k++)
+    if (!(*paths[k].path = file_join(directory, paths[k].name, status))) return false;
+  return true;
 }
 
-/* What can fail without harm comes before an earlier run is removed. */
-static bool prepare(struct recorder *recorder, const char *directory, bool *replaced, struct status *status)
-{
-  return prepare_paths(recorder, directory, status) && prepare_fields(recorder, status) &&
-         file_make_directory(directory, status) && remove_earlier_run(recorder, replaced, status) &&
-         write_case(recorder, status) && prepare_table(recorder, status) && prepare_frames(recorder, status);
-}
-
-bool recorder_open(struct recorder **recorder, const struct scene *scene, const char *directory, bool *replaced,
-                   struct status *status)
+/* A recorder with its paths and memory, which has not touched the disk yet. */
+static bool create(struct recorder **recorder, const struct scene *scene, const char *directory, struct status *status)
 {
   *recorder = NULL;
-  *replaced = false;
   if (scene->output.frames.every > 0 && !PICTURE_SUPPORTED)
     return status_fail(status, DELBM_INVALID,
                        "output.frames.every is %" PRId64 ", but this build has no libpng: only 0",
@@ -138,19 +163,114 @@ bool recorder_open(struct recorder **recorder, const struct scene *scene, const 
   *recorder = memory_allocate(1, sizeof **recorder, "the record of the run", status);
   if (!*recorder) return false;
   **recorder = (struct recorder){.scene = scene,
+                                 .lock = -1,
                                  .rows = {.every = scene->output.every, .recorded = -1},
-                                 .frames = {.every = scene->output.frames.every, .recorded = -1}};
-  if (prepare(*recorder, directory, replaced, status)) return true;
+                                 .frames = {.every = scene->output.frames.every, .recorded = -1},
+                                 .checkpoints = {.every = scene->output.checkpoint.every, .recorded = -1}};
+  return prepare_paths(*recorder, directory, status) && prepare_fields(*recorder, status) &&
+         scene_fingerprint(scene, &(*recorder)->fingerprint, status);
+}
+
+static bool destroy_unless(bool good, struct recorder **recorder)
+{
+  if (good) return true;
   recorder_destroy(*recorder);
   *recorder = NULL;
   return false;
 }
 
+/* What can fail without harm comes before an earlier run is removed. */
+static bool begin(struct recorder *recorder, const char *directory, bool *replaced, struct status *status)
+{
+  if (!file_make_directory(directory, status) || !lock_folder(recorder, directory, status) ||
+      !remove_earlier_run(recorder, replaced, status) || !write_case(recorder, status) ||
+      !prepare_table(recorder, status) || !prepare_frames(recorder, status))
+    return false;
+  recorder->start = clock_now();
+  return true;
+}
+
+bool recorder_open(struct recorder **recorder, const struct scene *scene, const char *directory, bool *replaced,
+                   struct status *status)
+{
+  *replaced = false;
+  return destroy_unless(create(recorder, scene, directory, status) && begin(*recorder, directory, replaced, status),
+                        recorder);
+}
+
+/* The newer of the good checkpoints, and why another was refused. */
+static bool choose_checkpoint(const struct recorder *recorder, int *chosen, struct checkpoint_head *head,
+                              struct status *refused)
+{
+  *chosen = -1;
+  refused->code = DELBM_OK;
+  for (int k = 0; k < CHECKPOINTS; k++) {
+    struct checkpoint_head found;
+    const char *path = recorder->checkpoint_path[k];
+    if (access(path, F_OK) != 0 || !checkpoint_examine(path, recorder->fingerprint, &found, refused)) continue;
+    if (*chosen >= 0 && found.step <= head->step) continue;
+    *chosen = k;
+    *head = found;
+  }
+  return *chosen >= 0;
+}
+
+static bool reopen_table(struct recorder *recorder, const struct run_record *record, struct status *status)
+{
+  if (recorder->rows.every == 0) return true;
+  if (record->table_bytes > 0) return csv_reopen(&recorder->table, recorder->table_path, record->table_bytes, status);
+  return csv_open(&recorder->table, recorder->table_path, status);
+}
+
+static bool take_up(struct recorder *recorder, const char *directory, struct simulation *simulation,
+                    struct resumption *resumption, struct status *status)
+{
+  int chosen;
+  struct checkpoint_head head;
+  struct run_record record;
+  if (!lock_folder(recorder, directory, status)) return false;
+  if (!choose_checkpoint(recorder, &chosen, &head, &resumption->refused)) {
+    if (resumption->refused.code == DELBM_OK)
+      return status_fail(status, DELBM_IO, "nothing to resume: %s holds no checkpoint", directory);
+    *status = resumption->refused;
+    resumption->refused.code = DELBM_OK;
+    return false;
+  }
+  if (head.step > recorder->scene->run.steps)
+    return status_fail(status, DELBM_INVALID, "the checkpoint is of step %" PRId64 ", beyond run.steps = %" PRId64,
+                       head.step, recorder->scene->run.steps);
+  resumption->other_kernel = strcmp(head.kernel, simulation_kernel(simulation)) != 0;
+  if (!checkpoint_read(recorder->checkpoint_path[chosen], simulation, &record, status) ||
+      !file_remove(recorder->summary_path, status) || !write_case(recorder, status) ||
+      !reopen_table(recorder, &record, status) || !prepare_frames(recorder, status) ||
+      !remove_frames(recorder->frames_path, head.step, status))
+    return false;
+  recorder->next_checkpoint = !chosen;
+  recorder->checkpoints.recorded = head.step;
+  recorder->seconds = record.output;
+  recorder->start = clock_now() - record.seconds;
+  return true;
+}
+
+bool recorder_resume(struct recorder **recorder, const struct scene *scene, const char *directory,
+                     struct simulation *simulation, struct resumption *resumption, struct status *status)
+{
+  *resumption = (struct resumption){0};
+  return destroy_unless(create(recorder, scene, directory, status) &&
+                            take_up(*recorder, directory, simulation, resumption, status),
+                        recorder);
+}
+
+static int64_t earlier(int64_t a, int64_t b)
+{
+  return a < b ? a : b;
+}
+
 int64_t recorder_next(const struct recorder *recorder, int64_t step)
 {
   int64_t end = recorder->scene->run.steps;
-  int64_t rows = series_next(&recorder->rows, step, end), frames = series_next(&recorder->frames, step, end);
-  return rows < frames ? rows : frames;
+  const int64_t shown = earlier(series_next(&recorder->rows, step, end), series_next(&recorder->frames, step, end));
+  return earlier(shown, series_next(&recorder->checkpoints, step, end));
 }
 
 static bool record_frame(struct recorder *recorder, struct simulation *simulation, struct status *status)
@@ -173,9 +293,32 @@ static bool record_frame(struct recorder *recorder, struct simulation *simulatio
   return written;
 }
 
+static bool write_checkpoint(struct recorder *recorder, struct simulation *simulation, struct status *status)
+{
+  struct run_record record = {.seconds = recorder_elapsed(recorder), .output = recorder->seconds};
+  if (recorder->table && !csv_sync(recorder->table, &record.table_bytes, status)) return false;
+  if (!checkpoint_write(recorder->checkpoint_path[recorder->next_checkpoint], recorder->fingerprint, simulation,
+                        &record, status))
+    return false;
+  recorder->next_checkpoint = !recorder->next_checkpoint;
+  recorder->checkpoints.recorded = simulation_step(simulation);
+  return true;
+}
+
+bool recorder_checkpoint(struct recorder *recorder, struct simulation *simulation, struct status *status)
+{
+  if (recorder->checkpoints.recorded == simulation_step(simulation)) return true;
+  const double start = clock_now();
+  const bool written = write_checkpoint(recorder, simulation, status);
+  recorder->seconds += clock_now() - start;
+  return written;
+}
+
 static bool record_due(struct recorder *recorder, struct simulation *simulation, bool last, struct status *status)
 {
   int64_t step = simulation_step(simulation);
+  if (step > 0 && series_is_due(&recorder->checkpoints, step, last) && !write_checkpoint(recorder, simulation, status))
+    return false;
   bool rows = series_is_due(&recorder->rows, step, last), frame = series_is_due(&recorder->frames, step, last);
   if (!rows && !frame && !last) return true;
   /* a table refuses what is not finite by itself; a look at all cells costs more than its rows */
@@ -184,7 +327,8 @@ static bool record_due(struct recorder *recorder, struct simulation *simulation,
   if (rows) recorder->rows.recorded = step;
   if (frame && !record_frame(recorder, simulation, status)) return false;
   if (frame) recorder->frames.recorded = step;
-  return true;
+  /* without `every` there is a checkpoint only of an interrupted run, which has now ended */
+  return !last || recorder->checkpoints.every > 0 || remove_checkpoints(recorder, status);
 }
 
 bool recorder_record(struct recorder *recorder, struct simulation *simulation, bool last, struct status *status)
@@ -205,6 +349,11 @@ bool recorder_summarise(const struct recorder *recorder, const struct summary *s
   return summary_write(summary, recorder->summary_path, status);
 }
 
+double recorder_elapsed(const struct recorder *recorder)
+{
+  return clock_now() - recorder->start;
+}
+
 double recorder_seconds(const struct recorder *recorder)
 {
   return recorder->seconds;
@@ -221,5 +370,7 @@ void recorder_destroy(struct recorder *recorder)
   free(recorder->table_path);
   free(recorder->frames_path);
   free(recorder->summary_path);
+  for (int k = 0; k < CHECKPOINTS; k++) free(recorder->checkpoint_path[k]);
+  if (recorder->lock >= 0) close(recorder->lock);
   free(recorder);
 }

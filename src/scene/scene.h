@@ -116,6 +116,9 @@ struct scene {
   struct {
     int64_t every; /* steps between rows of particles.csv; 0: none */
     struct {
+      int64_t every; /* 0: only when interrupted */
+    } checkpoint;
+    struct {
       int64_t every; /* 0: none */
       enum frame_quantity quantity;
       double maximum; /* value at the end of the colour scale; 0: the largest of each frame */

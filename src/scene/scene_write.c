@@ -4,7 +4,9 @@
 #include "scene/scene_keys.h"
 #include "scene/scene_value.h"
 
+#include <stdlib.h>
 #include <string.h>
+#include <zlib.h>
 
 /* The magic value from which rate_from_magic gives exactly this rate, as short as it can be written. The rate falls
  * with the value, also in floating point, so bisection finds one if there is any. */
@@ -174,17 +176,48 @@ static size_t write_rows(const struct draft *draft, const struct key *key, const
   return rows.count;
 }
 
-bool scene_write(const struct scene *scene, FILE *file)
+/* True for the sections that decide the course of a simulation. */
+static bool is_physics(const struct key *key)
+{
+  static const char *const sections[] = {"domain", "fluid", "coupling", "particles", "contact"};
+  for (size_t i = 0; i < sizeof sections / sizeof sections[0]; i++)
+    if (key_within(key->path, sections[i])) return true;
+  return false;
+}
+
+/* The case, or those of its sections alone. */
+static void write_case(const struct scene *scene, bool physics_alone, FILE *file)
 {
   const struct draft draft = draft_from_scene(scene);
   size_t count;
   const struct key *keys = key_table(&count);
-  fprintf(file, "# written by delbm %s\n", DELBM_VERSION);
   for (size_t i = 0; i < count;) {
+    if (physics_alone && !is_physics(&keys[i])) {
+      i++;
+      continue;
+    }
     size_t top = strcspn(keys[i].path, ".");
     bool opens = i == 0 || strncmp(keys[i].path, keys[i - 1].path, top + 1) != 0;
     if (keys[i].path[top] == '.' && opens) fprintf(file, "%.*s:\n", (int)top, keys[i].path);
     i += write_rows(&draft, &keys[i], keys + count, file);
   }
+}
+
+bool scene_write(const struct scene *scene, FILE *file)
+{
+  fprintf(file, "# written by delbm %s\n", DELBM_VERSION);
+  write_case(scene, false, file);
   return fflush(file) == 0 && !ferror(file);
+}
+
+bool scene_fingerprint(const struct scene *scene, uint32_t *fingerprint, struct status *status)
+{
+  char *text = NULL;
+  size_t length = 0;
+  FILE *stream = open_memstream(&text, &length);
+  if (stream) write_case(scene, true, stream);
+  const bool written = stream && fclose(stream) == 0;
+  if (written) *fingerprint = (uint32_t)crc32_z(0, (const void *)text, length);
+  free(text);
+  return written || status_fail(status, DELBM_FAILED, "out of memory: the fingerprint of the case");
 }

@@ -71,6 +71,12 @@ void flow_start(struct flow *f, const struct occupation *o, const struct discs *
   }
 }
 
+bool flow_store(struct flow *f, struct store *store, struct status *status)
+{
+  return populations_store(&f->populations, store, status) &&
+         store_bytes(store, f->constants.uniform, sizeof f->constants.uniform, status);
+}
+
 void stage_boundary(struct flow *f)
 {
 #pragma omp for schedule(static)

@@ -25,6 +25,9 @@ void flow_destroy(struct flow *flow);
  * step with its disc would be reflected to and fro about its velocity, for ever in the owen form. */
 void flow_start(struct flow *flow, const struct occupation *occupation, const struct discs *discs);
 
+/* Saves or restores the fluid and the uniform force of the coming step. */
+bool flow_store(struct flow *flow, struct store *store, struct status *status);
+
 /* Prepares for a parallel region of `threads`. */
 bool flow_prepare(struct flow *flow, int threads, struct status *status);
 

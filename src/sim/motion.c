@@ -35,6 +35,13 @@ void motion_destroy(struct motion *m)
   *m = (struct motion){0};
 }
 
+bool motion_store(struct motion *m, struct store *store, struct status *status)
+{
+  return store_mark(store, "motion", status) &&
+         store_bytes(store, &m->last_substep, sizeof m->last_substep, status) &&
+         store_bytes(store, &m->most_substeps, sizeof m->most_substeps, status);
+}
+
 static double inverse_mass(const struct discs *d, uint32_t i)
 {
   return d->motion[i] == DISC_FREE ? 1 / d->mass[i] : 0;

@@ -52,6 +52,9 @@ bool motion_create(struct motion *motion, const struct scene *scene, const struc
                    struct status *status);
 void motion_destroy(struct motion *motion);
 
+/* Saves or restores what a step leaves to the next. */
+bool motion_store(struct motion *motion, struct store *store, struct status *status);
+
 /* The stage; called by all threads of a parallel region or outside of one. Fails when a disc's speed is not finite or
  * above Mach 0.6, or when memory runs out. */
 void stage_contact(struct motion *motion, const struct occupation *occupation, struct exchange *exchange,

@@ -62,6 +62,14 @@ static bool create_discs(struct simulation *s, struct status *status)
          motion_create(&s->motion, s->scene, &s->plan, &s->discs, status);
 }
 
+/* Occupation where the discs are. */
+static bool paint(struct simulation *s, struct status *status)
+{
+  if (s->plan.exchange) stage_occupation(present(s), &s->discs, &s->team);
+  if (s->team.failed) *status = s->team.first;
+  return !s->team.failed;
+}
+
 bool simulation_create(struct simulation **simulation, const struct scene *scene, struct status *status)
 {
   struct simulation *s = memory_allocate(1, sizeof *s, "the simulation", status);
@@ -74,9 +82,7 @@ bool simulation_create(struct simulation **simulation, const struct scene *scene
     *simulation = NULL;
     return false;
   }
-  if (s->plan.exchange) stage_occupation(present(s), &s->discs, &s->team);
-  if (s->team.failed) {
-    *status = s->team.first;
+  if (!paint(s, status)) {
     simulation_destroy(s);
     *simulation = NULL;
     return false;
@@ -218,6 +224,39 @@ bool simulation_advance(struct simulation *s, int64_t steps, struct status *stat
     }
   }
   return true;
+}
+
+/* The state apart from what follows from it: occupation, and the sums of the coming exchange. */
+static bool store_state(struct simulation *s, struct store *store, struct status *status)
+{
+  return store_mark(store, "simulation", status) && store_bytes(store, &s->step, sizeof s->step, status) &&
+         store_bytes(store, s->initial_momentum, sizeof s->initial_momentum, status) &&
+         store_bytes(store, &s->max_mach, sizeof s->max_mach, status) &&
+         flow_store(&s->flow, store, status) &&
+         (!s->plan.exchange || (discs_store(&s->discs, store, status) &&
+                                exchange_store(&s->exchange, s->discs.count, store, status) &&
+                                motion_store(&s->motion, store, status))) &&
+         store_bytes(store, &s->times, sizeof s->times, status); /* last: they differ from run to run */
+}
+
+bool simulation_save(struct simulation *s, struct store *store, struct status *status)
+{
+  const double max_mach = s->max_mach;
+  if (!simulation_check(s, status)) return false;
+  s->max_mach = max_mach; /* saving is no look: it changes no figure of the run */
+  return store_state(s, store, status);
+}
+
+bool simulation_restore(struct simulation *s, struct store *store, struct status *status)
+{
+  if (!store_state(s, store, status) || !paint(s, status)) return false;
+  if (s->plan.exchange) stage_first_sums(&s->flow, present(s));
+  return true;
+}
+
+const char *simulation_kernel(const struct simulation *s)
+{
+  return s->flow.kernel->name;
 }
 
 int64_t simulation_step(const struct simulation *s)

@@ -5,6 +5,7 @@
 
 #include "base/clock.h"
 #include "base/threads.h"
+#include "base/store.h"
 #include "scene/scene.h"
 #include "solid/discs.h"
 
@@ -21,6 +22,15 @@ bool simulation_advance(struct simulation *simulation, int64_t steps, struct sta
 
 /* Looks for divergence now. To be called before anything is written, so that no file holds a NaN. */
 bool simulation_check(struct simulation *simulation, struct status *status);
+
+/* Saves the state, or restores it into a simulation of the same scene: all that makes the coming steps the same bits as
+ * those of a run that was never stopped, on any number of threads. What has diverged is not saved (DELBM_FAILED). After
+ * a failed restoring the simulation can only be destroyed. */
+bool simulation_save(struct simulation *simulation, struct store *store, struct status *status);
+bool simulation_restore(struct simulation *simulation, struct store *store, struct status *status);
+
+/* Name of the kernel that the processor and the scene allow: others may differ in the last bit. */
+const char *simulation_kernel(const struct simulation *simulation);
 
 int64_t simulation_step(const struct simulation *simulation);
 const struct scene *simulation_scene(const struct simulation *simulation);

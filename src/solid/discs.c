@@ -55,3 +55,13 @@ void discs_destroy(struct discs *discs)
   free(discs->block);
   *discs = (struct discs){0};
 }
+
+bool discs_store(struct discs *d, struct store *store, struct status *status)
+{
+  double *const arrays[] = {d->x,  d->y,  d->angle,  d->vx,         d->vy,         d->omega,
+                            d->fx, d->fy, d->torque, d->contact_fx, d->contact_fy, d->contact_torque};
+  if (!store_mark(store, "discs", status)) return false;
+  for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; k++)
+    if (!store_bytes(store, arrays[k], d->count * sizeof(double), status)) return false;
+  return true;
+}

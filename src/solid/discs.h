@@ -3,6 +3,7 @@
 #ifndef DELBM_SOLID_DISCS_H
 #define DELBM_SOLID_DISCS_H
 
+#include "base/store.h"
 #include "scene/scene.h"
 
 struct discs {
@@ -22,5 +23,8 @@ struct discs {
 
 bool discs_create(struct discs *discs, const struct scene *scene, struct status *status);
 void discs_destroy(struct discs *discs);
+
+/* Saves or restores what changes: places, velocities and the forces of the last step. */
+bool discs_store(struct discs *discs, struct store *store, struct status *status);
 
 #endif

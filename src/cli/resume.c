@@ -1,0 +1,104 @@
+#include "cli/commands.h"
+#include "cli/options.h"
+#include "cli/session.h"
+#include "output/file.h"
+
+#include <stdlib.h>
+#include <unistd.h>
+
+struct resume_options {
+  const char *directory;
+  struct settings settings;
+  char steps[64]; /* the setting that --steps stands for */
+  bool quiet;
+};
+
+static void print_help(void)
+{
+  puts("usage: delbm resume DIR [--steps N] [--quiet]\n"
+       "\n"
+       "Goes on with a run that was interrupted or that failed, from its last checkpoint in DIR, the folder of its "
+       "results.\n"
+       "Its files become the same, byte for byte, as those of a run that was never stopped (run.json but for times).\n"
+       "\n"
+       "  --steps N        total length of the run, in place of run.steps in DIR/case.yaml: extends a run\n"
+       "  --quiet          no progress on stderr, only errors\n"
+       "  --help           this text\n"
+       "\n"
+       "A run checkpoints when it is interrupted (Ctrl-C, SIGTERM) and every output.checkpoint.every steps. Two\n"
+       "checkpoints alternate; one that is damaged or of another case is refused, and the other used.");
+}
+
+static void report_choice(const struct resumption *resumption, const struct session *session)
+{
+  if (resumption->refused.code != DELBM_OK)
+    fprintf(stderr, "delbm: refused checkpoint %s; using the other one\n", resumption->refused.message);
+  if (resumption->other_kernel)
+    fprintf(stderr, "delbm: note: going on with kernel %s, another than before; results may differ in the last bit\n",
+            simulation_kernel(session->simulation));
+  if (!session->quiet)
+    fprintf(stderr, "delbm: resuming %s at step %lld\n", session->directory,
+            (long long)simulation_step(session->simulation));
+}
+
+static int resume_scene(const struct scene *scene, const struct resume_options *options)
+{
+  struct status status;
+  struct resumption resumption;
+  struct session session = {.scene = scene, .directory = options->directory, .quiet = options->quiet};
+  if (!simulation_create(&session.simulation, scene, &status)) return report_error(&status);
+  int code;
+  if (recorder_resume(&session.recorder, scene, options->directory, session.simulation, &resumption, &status)) {
+    report_choice(&resumption, &session);
+    code = session_run(&session);
+  } else {
+    code = report_error(&status);
+  }
+  recorder_destroy(session.recorder);
+  simulation_destroy(session.simulation);
+  return code;
+}
+
+static int resume_directory(const struct resume_options *options)
+{
+  struct scene scene = {0};
+  struct status status;
+  char *path = file_join(options->directory, "case.yaml", &status);
+  if (!path) return report_error(&status);
+  int code = case_read(&scene, path, &options->settings);
+  if (code == DELBM_OK) code = resume_scene(&scene, options);
+  scene_clear(&scene);
+  free(path);
+  return code;
+}
+
+int command_resume(int argc, char **argv)
+{
+  enum { OPTION_STEPS = OPTION_OWN, OPTION_QUIET };
+  static const struct option known[] = {{"steps", required_argument, NULL, OPTION_STEPS},
+                                        {"quiet", no_argument, NULL, OPTION_QUIET},
+                                        {"help", no_argument, NULL, OPTION_HELP},
+                                        {0}};
+  struct resume_options options = {0};
+  int code = DELBM_USAGE;
+  for (int option; (option = option_next(argc, argv, known)) != OPTION_END;) {
+    if (option == OPTION_QUIET) {
+      options.quiet = true;
+      continue;
+    }
+    if (option == OPTION_STEPS) {
+      snprintf(options.steps, sizeof options.steps, "run.steps=%s", optarg);
+      if (settings_add(&options.settings, options.steps, argc, argv)) continue;
+    }
+    if (option == OPTION_HELP) {
+      print_help();
+      code = DELBM_OK;
+    }
+    free(options.settings.items);
+    return code;
+  }
+  options.directory = option_operand(argc, argv, "DIR");
+  if (options.directory) code = resume_directory(&options);
+  free(options.settings.items);
+  return code;
+}

@@ -1,0 +1,142 @@
+#include "cli/session.h"
+
+#include "cli/options.h"
+#include "output/progress.h"
+
+#include <inttypes.h>
+#include <signal.h>
+
+/* The signal that asked the run to end, read between chunks of steps. A signal handler has no other way to speak. */
+static volatile sig_atomic_t stop_requested;
+
+struct run {
+  const struct scene *scene;
+  const char *directory;
+  struct simulation *simulation;
+  struct recorder *recorder;
+  struct progress progress;
+  enum outcome outcome; /* with the reason in status when it is not DONE */
+  struct status status;
+};
+
+static void request_stop(int signal_number)
+{
+  stop_requested = signal_number;
+}
+
+/* The first signal asks the run to end in order, the second ends the program. */
+static void listen_to_signals(void)
+{
+  struct sigaction action = {.sa_handler = request_stop, .sa_flags = (int)SA_RESETHAND | SA_RESTART};
+  sigemptyset(&action.sa_mask);
+  sigaction(SIGINT, &action, NULL);
+  sigaction(SIGTERM, &action, NULL);
+}
+
+/* Tells a diverged simulation from a full disk or memory. */
+static bool fail(struct run *run)
+{
+  struct status ignored;
+  bool diverged = run->status.code == DELBM_FAILED && !simulation_check(run->simulation, &ignored);
+  run->outcome = diverged ? OUTCOME_DIVERGED : OUTCOME_FAILED;
+  return false;
+}
+
+static bool record(struct run *run, bool last)
+{
+  return recorder_record(run->recorder, run->simulation, last, &run->status) || fail(run);
+}
+
+static bool advance(struct run *run, int64_t steps)
+{
+  if (simulation_advance(run->simulation, steps, &run->status)) return true;
+  run->outcome = run->status.code == DELBM_FAILED ? OUTCOME_DIVERGED : OUTCOME_FAILED;
+  return false;
+}
+
+/* Nothing but a checkpoint is written, and that before what is due at this step: the files stay the beginning of those of
+ * a run that goes on. */
+static bool interrupt(struct run *run)
+{
+  if (!recorder_checkpoint(run->recorder, run->simulation, &run->status)) return fail(run);
+  run->outcome = OUTCOME_INTERRUPTED;
+  return status_fail(&run->status, stop_requested == SIGTERM ? DELBM_TERMINATED : DELBM_INTERRUPTED,
+                     "interrupted at step %" PRId64 " of %" PRId64 "; `delbm resume %s` goes on from there",
+                     simulation_step(run->simulation), run->scene->run.steps, run->directory);
+}
+
+/* Steps that take about as long as a person will wait for the bar or for an interrupt; results do not depend on it. */
+static int64_t next_chunk(int64_t chunk, int64_t steps, double seconds)
+{
+  const double wanted = 0.2;
+  int64_t most = chunk < INT64_MAX / 8 ? 8 * chunk : chunk;
+  double fitting = seconds > 0 ? wanted * (double)steps / seconds : (double)most;
+  return fitting < 1 ? 1 : fitting < (double)most ? (int64_t)fitting : most;
+}
+
+static bool run_steps(struct run *run)
+{
+  int64_t end = run->scene->run.steps, step = simulation_step(run->simulation), chunk = 1;
+  for (;;) {
+    if (stop_requested) return interrupt(run);
+    if (!record(run, step == end)) return false;
+    if (step > 0) progress_update(&run->progress, step);
+    if (step == end) return true;
+    int64_t steps = recorder_next(run->recorder, step) - step;
+    if (steps > chunk) steps = chunk;
+    double start = clock_now();
+    if (!advance(run, steps)) return false;
+    chunk = next_chunk(chunk, steps, clock_now() - start);
+    step += steps;
+  }
+}
+
+/* An error after the steps: it decides the outcome unless an earlier one did. */
+static void note_failure(struct run *run, const struct status *status)
+{
+  if (run->outcome != OUTCOME_DONE) return;
+  run->outcome = OUTCOME_FAILED;
+  run->status = *status;
+}
+
+/* Closes the files and tells how the run ended: in run.json, on stdout and on stderr. */
+static void conclude(struct run *run)
+{
+  struct status status;
+  struct summary summary = {
+      .scene = run->scene, .steps = simulation_step(run->simulation), .seconds = recorder_elapsed(run->recorder)};
+  progress_finish(&run->progress, summary.steps);
+  if (!recorder_finish(run->recorder, &status)) note_failure(run, &status);
+  simulation_report(run->simulation, &summary.report);
+  summary.report.times.seconds[STAGE_OUTPUT] = recorder_seconds(run->recorder);
+  summary.outcome = run->outcome;
+  summary.message = run->outcome == OUTCOME_DONE ? NULL : run->status.message;
+  if (!recorder_summarise(run->recorder, &summary, &status)) note_failure(run, &status);
+  summary.outcome = run->outcome;
+  summary_print(&summary, stdout);
+  if (run->outcome != OUTCOME_DONE) report_error(&run->status);
+}
+
+/* What the run's speed depends on. */
+static void announce(const struct scene *scene)
+{
+  char binding[THREADS_TEXT];
+  threads_binding(binding);
+  fprintf(stderr, "delbm: %d threads, %s\n", threads_for(scene_cells(scene)), binding);
+}
+
+int session_run(const struct session *session)
+{
+  struct run run = {.scene = session->scene,
+                    .directory = session->directory,
+                    .simulation = session->simulation,
+                    .recorder = session->recorder};
+  const enum progress_style style = session->quiet ? PROGRESS_NONE : progress_style(stderr);
+  if (!session->quiet) announce(session->scene);
+  listen_to_signals();
+  progress_start(&run.progress, style, stderr, simulation_step(run.simulation), run.scene->run.steps,
+                 (double)scene_cells(run.scene));
+  run_steps(&run);
+  conclude(&run);
+  return run.outcome == OUTCOME_DONE ? DELBM_OK : (int)run.status.code;
+}

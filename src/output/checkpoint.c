@@ -1,0 +1,107 @@
+#include "output/checkpoint.h"
+
+#include "base/memory.h"
+#include "output/file.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <zlib.h>
+
+static const char magic[8] = "delbm\r\n";
+static const uint32_t order = 0x01020304;
+
+enum { FORMAT = 1, BUFFER = 1 << 20 };
+
+static bool store_record(struct run_record *record, struct store *store, struct status *status)
+{
+  return store_mark(store, "record", status) && store_bytes(store, record, sizeof *record, status);
+}
+
+static bool write_sum(struct store *store, struct status *status)
+{
+  uint32_t sum = store->sum;
+  return store_bytes(store, &sum, sizeof sum, status);
+}
+
+bool checkpoint_write(const char *path, uint32_t fingerprint, struct simulation *simulation,
+                      const struct run_record *record, struct status *status)
+{
+  struct replacement file;
+  struct checkpoint_head head = {
+      .order = order, .format = FORMAT, .fingerprint = fingerprint, .step = simulation_step(simulation)};
+  struct run_record copy = *record;
+  memcpy(head.magic, magic, sizeof magic);
+  snprintf(head.kernel, sizeof head.kernel, "%s", simulation_kernel(simulation));
+  if (!replacement_begin(&file, path, status)) return false;
+  setvbuf(file.stream, NULL, _IOFBF, BUFFER);
+  struct store store = {.stream = file.stream, .path = path, .saving = true};
+  if (store_bytes(&store, &head, sizeof head, status) && simulation_save(simulation, &store, status) &&
+      store_record(&copy, &store, status) && write_sum(&store, status))
+    return replacement_commit_durably(&file, status);
+  replacement_abandon(&file);
+  return false;
+}
+
+static bool refuse(struct status *status, const char *path, const char *reason)
+{
+  return status_fail(status, DELBM_IO, "%s: %s", path, reason);
+}
+
+static bool check_head(const char *path, const struct checkpoint_head *head, uint32_t fingerprint,
+                       struct status *status)
+{
+  if (memcmp(head->magic, magic, sizeof magic) != 0) return refuse(status, path, "not a checkpoint of delbm");
+  if (head->order != order) return refuse(status, path, "from a machine with another order of bytes");
+  if (head->format != FORMAT)
+    return status_fail(status, DELBM_IO, "%s: of format %u; this delbm (%s) reads format %d", path, head->format,
+                       DELBM_VERSION, FORMAT);
+  if (head->fingerprint != fingerprint)
+    return refuse(status, path, "of another case: domain, fluid, coupling, particles or contact differ");
+  return true;
+}
+
+/* True if the bytes that follow the head and the head itself have the sum at the end of the file. */
+static bool check_sum(FILE *stream, const char *path, const struct checkpoint_head *head, struct status *status)
+{
+  uint32_t sum = (uint32_t)crc32_z(0, (const void *)head, sizeof *head), found = 0;
+  unsigned char *buffer = memory_allocate(BUFFER, 1, "a checkpoint", status);
+  if (!buffer) return false;
+  size_t held = 0, got; /* the last bytes are held back: they are the sum */
+  while ((got = fread(buffer + held, 1, BUFFER - held, stream)) > 0) {
+    held += got;
+    if (held <= sizeof found) continue;
+    sum = (uint32_t)crc32_z(sum, buffer, held - sizeof found);
+    memmove(buffer, buffer + held - sizeof found, sizeof found);
+    held = sizeof found;
+  }
+  const bool failed = ferror(stream);
+  if (held == sizeof found) memcpy(&found, buffer, sizeof found);
+  free(buffer);
+  if (failed) return file_fail(status, "read", path, errno);
+  return (held == sizeof found && found == sum) ||
+         refuse(status, path, "damaged or incomplete: its checksum does not match");
+}
+
+bool checkpoint_examine(const char *path, uint32_t fingerprint, struct checkpoint_head *head, struct status *status)
+{
+  FILE *stream = fopen(path, "rb");
+  if (!stream) return file_fail(status, "open", path, errno);
+  bool good = fread(head, sizeof *head, 1, stream) == 1 || refuse(status, path, "not a checkpoint of delbm");
+  good = good && check_head(path, head, fingerprint, status) && check_sum(stream, path, head, status);
+  fclose(stream);
+  return good;
+}
+
+bool checkpoint_read(const char *path, struct simulation *simulation, struct run_record *record, struct status *status)
+{
+  FILE *stream = fopen(path, "rb");
+  if (!stream) return file_fail(status, "open", path, errno);
+  setvbuf(stream, NULL, _IOFBF, BUFFER);
+  struct checkpoint_head head;
+  struct store store = {.stream = stream, .path = path};
+  const bool restored = store_bytes(&store, &head, sizeof head, status) &&
+                        simulation_restore(simulation, &store, status) && store_record(record, &store, status);
+  fclose(stream);
+  return restored;
+}

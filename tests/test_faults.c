@@ -1,0 +1,102 @@
+/* What a disk or a shell does to a run: a clear message, exit code 4, and the last good checkpoint stays. */
+#include "shell.h"
+
+static const char *const pair = "domain: {size: [64, 60]}\n"
+                                "fluid: {viscosity: 0.05}\n"
+                                "particles:\n"
+                                "  density: 1.2\n"
+                                "  gravity: [0, -1e-4]\n"
+                                "  discs: [{radius: 7, position: [30, 40]}, {radius: 6, position: [33, 20]}]\n"
+                                "run: {steps: 3000}\n"
+                                "output: {every: 1, checkpoint: {every: 100}}\n";
+
+static void enter(void)
+{
+  shell_enter();
+  shell_write("pair.yaml", pair);
+  shell_write("silent.yaml", "domain: {size: [8, 8]}\nfluid: {viscosity: 0.1}\nrun: {steps: 3}\n");
+}
+
+TestSuite(faults, .init = enter, .fini = shell_leave, .timeout = 60);
+
+/* Runs a script in a mount namespace of its own; skips the test where that is not allowed. */
+static void need_mounts(void)
+{
+  if (shell("unshare -m mount -t tmpfs tmpfs /mnt 2>/dev/null") != 0) cr_skip_test("mounting needs root");
+}
+
+Test(faults, a_full_disk_ends_the_run_and_room_lets_it_go_on)
+{
+  need_mounts();
+  cr_assert_eq(shell("$DELBM run pair.yaml --quiet --out whole >/dev/null && mkdir disk"), 0);
+  cr_expect_eq(shell("unshare -m sh -c 'mount -t tmpfs -o size=1000k tmpfs disk && "
+                     "$DELBM run pair.yaml --quiet --out disk/cut >out 2>err; test $? = 4 || exit 9; "
+                     "ls disk/cut/checkpoint.0 disk/cut/checkpoint.1 >/dev/null || exit 8; "
+                     "mount -o remount,size=8000k disk && $DELBM resume disk/cut --quiet >/dev/null || exit 7; "
+                     "cmp whole/particles.csv disk/cut/particles.csv'"),
+               0);
+  cr_expect_eq(
+      shell("grep -qE '^delbm: cannot write disk/cut/(particles.csv|checkpoint.[01]): No space left on device$' "
+            "err && grep -q status=failed out"),
+      0);
+}
+
+Test(faults, a_limit_on_file_size_is_an_error_like_a_full_disk)
+{
+  cr_expect_eq(shell("$DELBM run pair.yaml --quiet --out whole >/dev/null; ulimit -f 800; "
+                     "$DELBM run pair.yaml --quiet --out cut >out 2>err"),
+               4);
+  cr_expect_eq(shell("grep -q '^delbm: cannot write cut/particles.csv: File too large$' err"), 0);
+  cr_expect_eq(shell("$DELBM resume cut --quiet >/dev/null && cmp whole/particles.csv cut/particles.csv"), 0);
+}
+
+Test(faults, a_checkpoint_that_cannot_be_written_leaves_the_earlier_ones)
+{
+  cr_assert_eq(shell("$DELBM run pair.yaml --quiet --set run.steps=300 --out cut >/dev/null && "
+                     "cp cut/checkpoint.0 cut/checkpoint.1 ."),
+               0);
+  cr_expect_eq(shell("sed -i 's/^  every: 1$/  every: 0/' cut/case.yaml; ulimit -f 100; "
+                     "$DELBM resume cut --steps 900 --quiet >out 2>err"),
+               4);
+  cr_expect_eq(
+      shell("grep -qE '^delbm: cannot write cut/checkpoint.[01]: File too large$' err && "
+            "cmp checkpoint.0 cut/checkpoint.0 && cmp checkpoint.1 cut/checkpoint.1 && ! ls cut/*.tmp 2>/dev/null"),
+      0);
+  cr_expect_eq(shell("$DELBM resume cut --steps 900 --quiet >/dev/null"), 0);
+}
+
+Test(faults, a_read_only_folder_is_refused_before_the_first_step)
+{
+  need_mounts();
+  cr_expect_eq(
+      shell("mkdir disk; unshare -m sh -c 'mount -t tmpfs tmpfs disk && $DELBM run silent.yaml --quiet --out disk/old "
+            ">/dev/null && mount -o remount,ro disk; "
+            "$DELBM run silent.yaml --out disk/new 2>err1; a=$?; $DELBM run silent.yaml --out disk/old 2>err2; b=$?; "
+            "test $a = 4 -a $b = 4 -a -s disk/old/run.json'"),
+      0);
+  cr_expect_eq(shell("grep -q '^delbm: cannot make folder disk/new: Read-only file system$' err1 && "
+                     "grep -q '^delbm: cannot .* disk/old/.*: Read-only file system$' err2"),
+               0);
+}
+
+Test(faults, a_missing_folder_or_case_is_named)
+{
+  cr_expect_eq(shell("$DELBM resume absent 2>err"), 4);
+  cr_expect_eq(shell("grep -q '^delbm: cannot open absent/case.yaml: No such file or directory$' err"), 0);
+  cr_expect_eq(shell("mkdir bare; cp silent.yaml bare/case.yaml; $DELBM resume bare 2>err"), 4);
+  cr_expect_eq(shell("grep -q '^delbm: nothing to resume: bare holds no checkpoint$' err"), 0);
+}
+
+Test(faults, stdout_closed_full_or_broken_fails_after_the_run)
+{
+  cr_expect_eq(shell("$DELBM run silent.yaml --quiet --out closed >&- 2>err"), 4);
+  cr_expect_eq(shell("grep -q '^delbm: cannot write to standard output: ' err && "
+                     "grep -q '\"status\": \"done\"' closed/run.json && ! grep -q status= closed/particles.csv"),
+               0);
+  cr_expect_eq(shell("$DELBM run silent.yaml --quiet --out full >/dev/full 2>err"), 4);
+  cr_expect_eq(shell("grep -q '^delbm: cannot write to standard output: No space left on device$' err && "
+                     "grep -q '\"status\": \"done\"' full/run.json"),
+               0);
+  cr_expect_eq(
+      shell("{ $DELBM run silent.yaml --quiet --out pipe 2>err; echo $? >code; } | true; read -r c <code; exit $c"), 4);
+}

@@ -1,0 +1,294 @@
+/* Saving and restoring, in memory and from outside: a run that was stopped, however, ends as one that never was. */
+#include "drive.h"
+#include "scenes.h"
+#include "shell.h"
+
+#include "base/clock.h"
+#include "output/checkpoint.h"
+#include "scene/scene_write.h"
+
+#include <math.h>
+#include <omp.h>
+
+/* A state as bytes. */
+struct saved {
+  char *bytes;
+  size_t size;
+};
+
+static struct saved save(struct simulation *simulation)
+{
+  struct saved saved = {0};
+  struct status status;
+  FILE *stream = open_memstream(&saved.bytes, &saved.size);
+  struct store store = {.stream = stream, .path = "memory", .saving = true};
+  cr_assert(simulation_save(simulation, &store, &status), "%s", status.message);
+  fclose(stream);
+  return saved;
+}
+
+static struct simulation *restore(const struct scene *scene, const struct saved *saved)
+{
+  struct status status;
+  struct simulation *simulation = start(scene);
+  FILE *stream = fmemopen(saved->bytes, saved->size, "rb");
+  struct store store = {.stream = stream, .path = "memory"};
+  cr_assert(simulation_restore(simulation, &store, &status), "%s", status.message);
+  fclose(stream);
+  return simulation;
+}
+
+/* Runs the scene whole, and again with a stop every `pause` steps, each part on another number of threads. The states
+ * at the end must have the same bits. */
+static void expect_same_end(const char *what, const struct scene *scene, int64_t steps, int64_t pause)
+{
+  omp_set_num_threads(2);
+  struct simulation *whole = start(scene), *part = start(scene);
+  advance(whole, steps);
+  for (int64_t done = 0; done < steps; done += pause) {
+    const int64_t left = steps - done;
+    omp_set_num_threads(1 + (int)(done / pause) % 3);
+    advance(part, pause < left ? pause : left);
+    const struct saved state = save(part);
+    simulation_destroy(part);
+    part = restore(scene, &state);
+    free(state.bytes);
+  }
+  const struct saved a = save(whole), b = save(part);
+  cr_assert_eq(a.size, b.size);
+  cr_expect_eq(memcmp(a.bytes, b.bytes, a.size - sizeof(struct stage_times)), 0, "%s", what);
+  simulation_destroy(whole);
+  simulation_destroy(part);
+}
+
+Test(state, of_settling_discs_is_whole)
+{
+  struct scene scene = scene_crowd(150, 130, 7, 16, 0.9);
+  expect_same_end("owen", &scene, 240, 37);
+  scene.coupling.form = FORM_UNIFIED;
+  scene.contact.area = AREA_CELLS;
+  expect_same_end("unified, cells", &scene, 240, 61);
+  scene.fluid.precision = PRECISION_SINGLE;
+  expect_same_end("single", &scene, 240, 80);
+}
+
+Test(state, of_stiff_contacts_is_whole)
+{
+  struct scene scene = scene_crowd(150, 130, 7, 15, 0.4);
+  scene.contact.stiffness = 30;
+  scene.contact.search = SEARCH_LINKED_CELL;
+  expect_same_end("stiff", &scene, 400, 41);
+}
+
+/* Two discs that move through all sides of a periodic box, one driven. */
+static struct scene periodic_pair(double density)
+{
+  struct scene scene = scene_box(90, 80, 0.04, SIDES_PERIODIC);
+  scene.particles.gravity[0] = 2e-4;
+  scene.fluid.force[1] = 1e-5;
+  scene_add_disc(&scene, 9.3, density, 30, 40)->velocity[1] = 0.05;
+  struct disc_spec *driven = scene_add_disc(&scene, 8, 1, 60, 50);
+  driven->motion = DISC_DRIVEN;
+  driven->velocity[0] = -0.02;
+  driven->spin = 0.004;
+  return scene;
+}
+
+Test(state, of_light_discs_is_whole)
+{
+  const struct scene scene = periodic_pair(0.1);
+  expect_same_end("light", &scene, 300, 43);
+}
+
+Test(state, of_averaged_forces_is_whole)
+{
+  struct scene scene = periodic_pair(2);
+  scene.coupling.solve = SOLVE_EXPLICIT_AVERAGED;
+  expect_same_end("explicit-averaged", &scene, 300, 43);
+}
+
+Test(state, of_fixed_discs_and_of_none_is_whole)
+{
+  struct scene scene = scene_square_array(8, 0.2, 0.05, 1e-5);
+  expect_same_end("fixed", &scene, 200, 33);
+  scene = scene_box(140, 120, 0.03, SIDES_CLOSED);
+  scene.domain.side[SIDE_TOP].velocity[0] = 0.05;
+  expect_same_end("blocked in time", &scene, 300, 71);
+  scene.domain.side[SIDE_LEFT] = (struct side){SIDE_INLET, {0.03, 0}};
+  scene.domain.side[SIDE_RIGHT].type = SIDE_OUTLET;
+  expect_same_end("outlet", &scene, 200, 51);
+  scene_add_disc(&scene, 6, 1.5, 50, 60);
+  expect_same_end("outlet and a disc", &scene, 200, 51);
+}
+
+Test(state, that_has_diverged_is_not_saved)
+{
+  struct scene scene = scene_box(40, 40, 0.03, SIDES_CLOSED);
+  scene_add_disc(&scene, 6, 1.5, 20, 20)->velocity[0] = 0.3;
+  scene.domain.side[SIDE_TOP].velocity[0] = 0.34;
+  scene.fluid.force[0] = 0.05;
+  scene.run.check = 1000;
+  struct simulation *simulation = start(&scene);
+  struct status status;
+  simulation_advance(simulation, 40, &status);
+  char *bytes;
+  size_t size;
+  struct store store = {.stream = open_memstream(&bytes, &size), .path = "memory", .saving = true};
+  cr_assert_not(simulation_save(simulation, &store, &status));
+  cr_assert_eq(status.code, DELBM_FAILED);
+  fclose(store.stream);
+}
+
+Test(checkpoint, of_another_case_is_known_and_of_another_length_is_not)
+{
+  struct scene scene = scene_crowd(100, 100, 7, 16, 0.9);
+  struct status status;
+  uint32_t first, second;
+  cr_assert(scene_fingerprint(&scene, &first, &status));
+  scene.run.steps = 17;
+  scene.output.every = 3;
+  cr_assert(scene_fingerprint(&scene, &second, &status));
+  cr_expect_eq(first, second);
+  scene.contact.alpha = nextafter(scene.contact.alpha, 1);
+  cr_assert(scene_fingerprint(&scene, &second, &status));
+  cr_expect_neq(first, second);
+}
+
+/* The rest is from outside. */
+TestSuite(resume, .init = shell_enter, .fini = shell_leave, .timeout = 120);
+
+/* Discs that fall, meet each other and the walls; frames and rows at steps of their own. */
+static const char *const crowd = "title: crowd\n"
+                                 "domain: {size: [200, 180]}\n"
+                                 "fluid: {viscosity: 0.03}\n"
+                                 "particles:\n"
+                                 "  density: 1.3\n"
+                                 "  gravity: [1e-5, -4e-4]\n"
+                                 "  fill: {pattern: jittered-grid, spacing: 20, radius: 9.2, jitter: 1, seed: 5}\n"
+                                 "run: {steps: 1501}\n"
+                                 "output: {every: 50, checkpoint: {every: 97}, frames: {every: 400}}\n";
+
+/* Compares the folders `whole` and `cut`: all but what tells of the time that a run took. */
+static const char *const compare =
+    "cmp whole/particles.csv cut/particles.csv && cmp whole/case.yaml cut/case.yaml && "
+    "{ test ! -e whole/frames || diff -r whole/frames cut/frames; } && "
+    "{ test ! -e whole/fields.h5 || { cmp whole/fields.h5 cut/fields.h5 && cmp whole/fields.xdmf cut/fields.xdmf; }; } "
+    "&& "
+    "for run in whole cut; do for k in 0 1; do "
+    "printf '%d %d\\n' $(od -An -t d8 -j 24 -N 8 $run/checkpoint.$k) $k; done | sort -n | tail -n 1 | "
+    "{ read -r step k; head -c -100 $run/checkpoint.$k >$run.state; }; done; cmp whole.state cut.state && "
+    "for key in steps mass_drift max_mach max_substeps; do "
+    "test \"$(grep $key whole/run.json)\" = \"$(grep $key cut/run.json)\" || exit 1; done";
+
+/* 100 bytes: stage_times, and behind them a mark, struct run_record and the checksum. */
+_Static_assert(sizeof(struct stage_times) + 16 + sizeof(struct run_record) + 4 == 100, "what `compare` cuts off");
+
+Test(resume, after_kills_at_any_moment_the_files_are_those_of_a_run_never_stopped)
+{
+  shell_write("crowd.yaml", crowd);
+  cr_assert_eq(shell("OMP_NUM_THREADS=2 $DELBM run crowd.yaml --quiet --out whole >/dev/null"), 0);
+  for (int seed = 1; seed <= 3; seed++) {
+    /* kills after 0.05 to 0.3 s, wherever that is, until a run gets to its end */
+    cr_assert_eq(shell("RANDOM=%d; export RANDOM; rm -rf cut; n=0; r=%d; go=\"run crowd.yaml --out cut\"; "
+                       "while :; do n=$((n + 1)); r=$(((r * 1103515245 + 12345) %% 2147483648)); "
+                       "OMP_NUM_THREADS=$((1 + n %% 3)) $DELBM $go --quiet >/dev/null 2>err & p=$!; "
+                       "sleep $(awk \"BEGIN { print 0.05 + 0.25 * $r / 2147483648 }\"); "
+                       "kill -KILL $p 2>/dev/null; wait $p && break; "
+                       "ls cut/checkpoint.[01] >/dev/null 2>&1 && go=\"resume cut\"; test $n -lt 200 || exit 9; done; "
+                       "test $n -gt 2 || exit 8",
+                       seed, seed * 7919),
+                 0);
+    cr_expect_eq(shell("%s", compare), 0, "seed %d", seed);
+  }
+}
+
+Test(resume, after_signals_goes_on_and_their_exit_codes_differ)
+{
+  shell_write("crowd.yaml", crowd);
+  cr_assert_eq(shell("$DELBM run crowd.yaml --quiet --out whole >/dev/null"), 0);
+  cr_expect_eq(shell("timeout -s INT --preserve-status 0.2 $DELBM run crowd.yaml --quiet --out cut >out 2>err"), 130);
+  cr_expect_eq(shell("grep -q 'interrupted at step .*delbm resume cut' err && grep -q status=interrupted out && "
+                     "grep -q '\"status\": \"interrupted\"' cut/run.json"),
+               0);
+  cr_expect_eq(shell("timeout -s TERM --preserve-status 0.2 $DELBM resume cut --quiet >out 2>err"), 143);
+  cr_expect_eq(shell("$DELBM resume cut >out 2>err && grep -q 'resuming cut at step' err && grep -q steps=1501 out"),
+               0);
+  cr_expect_eq(shell("%s", compare), 0);
+}
+
+Test(resume, without_regular_checkpoints_leaves_none_behind)
+{
+  shell_write("crowd.yaml", crowd);
+  cr_expect_eq(
+      shell("timeout -s INT --preserve-status 0.2 $DELBM run crowd.yaml --set output.checkpoint.every=0 --quiet "
+            "--out cut >/dev/null 2>&1"),
+      130);
+  cr_expect_eq(shell("ls cut/checkpoint.0 >/dev/null && $DELBM resume cut --quiet >/dev/null"), 0);
+  cr_expect_eq(shell("ls cut/checkpoint.* 2>/dev/null"), 2);
+  cr_expect_eq(shell("$DELBM resume cut 2>err"), 4);
+  cr_expect_eq(shell("grep -q 'nothing to resume: cut holds no checkpoint' err"), 0);
+}
+
+Test(resume, extends_a_finished_run)
+{
+  shell_write("crowd.yaml", crowd);
+  cr_assert_eq(shell("$DELBM run crowd.yaml --quiet --out whole >/dev/null"), 0);
+  cr_assert_eq(shell("$DELBM run crowd.yaml --set run.steps=777 --quiet --out cut >/dev/null && "
+                     "$DELBM resume cut --steps 1501 --quiet >/dev/null"),
+               0);
+  cr_expect_eq(shell("%s", compare), 0);
+  cr_expect_eq(shell("$DELBM resume cut --steps 100 2>err"), 3);
+  cr_expect_eq(shell("$DELBM resume cut --steps=-1 2>err"), 3);
+}
+
+Test(resume, refuses_what_is_damaged_or_foreign_and_says_why)
+{
+  shell_write("crowd.yaml", crowd);
+  cr_assert_eq(shell("$DELBM run crowd.yaml --quiet --out whole >/dev/null && cp -r whole good"), 0);
+  /* of two, the newer is damaged: the older is used and the end is the same */
+  cr_assert_eq(
+      shell("cp -r good cut; newer=$(for k in 0 1; do "
+            "printf '%%d %%d\\n' $(od -An -t d8 -j 24 -N 8 good/checkpoint.$k) $k; done | sort -n | tail -n 1); "
+            "echo ${newer#* } >newer; "
+            "printf x | dd of=cut/checkpoint.${newer#* } bs=1 seek=200000 conv=notrunc 2>/dev/null; "
+            "$DELBM resume cut --quiet >/dev/null 2>err"),
+      0);
+  cr_expect_eq(
+      shell("grep -q \"refused checkpoint cut/checkpoint.$(cat newer): damaged or incomplete: its checksum does not "
+            "match; using the other one\" err"),
+      0);
+  cr_expect_eq(shell("%s", compare), 0);
+  /* cut short, and not a checkpoint at all */
+  cr_expect_eq(shell("truncate -s -1 cut/checkpoint.1; echo hello >cut/checkpoint.0; $DELBM resume cut 2>err"), 4);
+  cr_expect_eq(shell("grep -q 'checkpoint.1: damaged or incomplete' err"), 0);
+  cr_expect_eq(shell("rm cut/checkpoint.1; $DELBM resume cut 2>err"), 4);
+  cr_expect_eq(shell("grep -q 'cut/checkpoint.0: not a checkpoint of delbm' err"), 0);
+  /* of another case */
+  cr_assert_eq(shell("$DELBM run crowd.yaml --set fluid.viscosity=0.031 --quiet --out other >/dev/null; "
+                     "cp other/checkpoint.0 cut/; $DELBM resume cut 2>err"),
+               4);
+  cr_expect_eq(
+      shell("grep -q 'cut/checkpoint.0: of another case: domain, fluid, coupling, particles or contact differ' "
+            "err"),
+      0);
+  /* of another format, found before the checksum is */
+  cr_expect_eq(shell("cp good/checkpoint.0 cut/; printf '\\7' | dd of=cut/checkpoint.0 bs=1 seek=12 conv=notrunc "
+                     "2>/dev/null; $DELBM resume cut 2>err"),
+               4);
+  cr_expect_eq(shell("grep -q 'cut/checkpoint.0: of format 7; this delbm .* reads format 1' err"), 0);
+  /* the table was changed behind our back */
+  cr_expect_eq(shell("cp good/checkpoint.0 cut/; truncate -s 100 cut/particles.csv; $DELBM resume cut 2>err"), 4);
+  cr_expect_eq(shell("grep -q 'cut/particles.csv has 100 bytes, fewer than' err"), 0);
+}
+
+Test(resume, and_run_keep_out_of_a_folder_in_use)
+{
+  shell_write("crowd.yaml", crowd);
+  cr_expect_eq(
+      shell("$DELBM run crowd.yaml --set run.steps=100000000 --quiet --out cut >/dev/null 2>&1 & p=$!; sleep 0.4; "
+            "$DELBM resume cut 2>err1; a=$?; $DELBM run crowd.yaml --out cut 2>err2; b=$?; kill $p; wait $p; "
+            "test $a = 4 -a $b = 4"),
+      0);
+  cr_expect_eq(
+      shell("grep -q 'another delbm is running in cut' err1 && grep -q 'another delbm is running in cut' err2"), 0);
+}
