@@ -194,11 +194,15 @@ static struct scene some_scene(void)
 
 static struct summary some_summary(const struct scene *scene)
 {
-  return (struct summary){
-      .scene = scene,
-      .steps = 50,
-      .seconds = 2,
-      .report = {.threads = 3, .kernel = "plain", .plan = "16", .binding = "unbound", .mass_drift = 0.5, .momentum_drift = NAN}};
+  return (struct summary){.scene = scene,
+                          .steps = 50,
+                          .seconds = 2,
+                          .report = {.threads = 3,
+                                     .kernel = "plain",
+                                     .plan = "16",
+                                     .binding = "unbound",
+                                     .mass_drift = 0.5,
+                                     .momentum_drift = NAN}};
 }
 
 static char *run_json(const struct summary *summary)
@@ -237,7 +241,8 @@ Test(summary, run_json_holds_the_figures)
   char *json = run_json(&summary);
   assert_starts(json, "{\n  \"status\": \"done\",\n  \"steps\": 50,\n");
   assert_holds(json, "\n  \"mlups\": 0.0050000000000000001,\n");
-  assert_holds(json, "\n  \"threads\": 3,\n  \"binding\": \"unbound\",\n  \"kernel\": \"plain\",\n  \"plan\": \"16\",\n  \"precision\": "
+  assert_holds(json, "\n  \"threads\": 3,\n  \"binding\": \"unbound\",\n  \"kernel\": \"plain\",\n  \"plan\": "
+                     "\"16\",\n  \"precision\": "
                      "\"double\",\n  \"stages\": {\n");
   assert_holds(json, "\n    \"output\": 0.25\n  },\n  \"mass_drift\": 0.5,\n");
   assert_holds(json, "\n  \"title\": \"Title\"\n}\n");

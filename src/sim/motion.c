@@ -37,8 +37,7 @@ void motion_destroy(struct motion *m)
 
 bool motion_store(struct motion *m, struct store *store, struct status *status)
 {
-  return store_mark(store, "motion", status) &&
-         store_bytes(store, &m->last_substep, sizeof m->last_substep, status) &&
+  return store_mark(store, "motion", status) && store_bytes(store, &m->last_substep, sizeof m->last_substep, status) &&
          store_bytes(store, &m->most_substeps, sizeof m->most_substeps, status);
 }
 

@@ -231,11 +231,10 @@ static bool store_state(struct simulation *s, struct store *store, struct status
 {
   return store_mark(store, "simulation", status) && store_bytes(store, &s->step, sizeof s->step, status) &&
          store_bytes(store, s->initial_momentum, sizeof s->initial_momentum, status) &&
-         store_bytes(store, &s->max_mach, sizeof s->max_mach, status) &&
-         flow_store(&s->flow, store, status) &&
-         (!s->plan.exchange || (discs_store(&s->discs, store, status) &&
-                                exchange_store(&s->exchange, s->discs.count, store, status) &&
-                                motion_store(&s->motion, store, status))) &&
+         store_bytes(store, &s->max_mach, sizeof s->max_mach, status) && flow_store(&s->flow, store, status) &&
+         (!s->plan.exchange ||
+          (discs_store(&s->discs, store, status) && exchange_store(&s->exchange, s->discs.count, store, status) &&
+           motion_store(&s->motion, store, status))) &&
          store_bytes(store, &s->times, sizeof s->times, status); /* last: they differ from run to run */
 }
 

@@ -4,8 +4,8 @@
 #define DELBM_SIM_SIMULATION_H
 
 #include "base/clock.h"
-#include "base/threads.h"
 #include "base/store.h"
+#include "base/threads.h"
 #include "scene/scene.h"
 #include "solid/discs.h"
 
