@@ -327,6 +327,10 @@ static const char *compare_cells(const struct occupation *a, const struct occupa
   const size_t indices = a->discs * sizeof(int32_t);
   if (memcmp(a->column, b->column, indices) || memcmp(a->row, b->row, indices) || memcmp(a->rows, b->rows, indices))
     return "places";
+  for (size_t i = 0; i < a->discs; i++) /* where the exchange finds the sums of a disc's rows */
+    if (memcmp(a->place + 2 * a->first_row[i], b->place + 2 * b->first_row[i],
+               2 * (size_t)a->rows[i] * sizeof *a->place))
+      return "rows of discs";
   return NULL;
 }
 
@@ -398,6 +402,46 @@ Test(occupation, tables_depend_on_where_discs_are_and_not_on_where_they_were)
   for (int reach = 0; reach < 2; reach++) {
     check_history(SIDES_PERIODIC, reach, 21 + (unsigned long)reach);
     check_history(SIDES_CLOSED, reach, 31 + (unsigned long)reach);
+  }
+}
+
+static size_t stale_bands(const struct occupation *o)
+{
+  size_t count = 0;
+  for (int k = 0; k < o->band_count; k++) count += o->stale[k];
+  return count;
+}
+
+/* One disc moves a step, in a box of many bands. */
+static void check_few_move(enum sides sides, int reach, unsigned long seed)
+{
+  gsl_rng *random = random_from(seed);
+  struct painting p = {.scene = scene_box(60, 400, 0.02, sides)};
+  scatter(&p.scene, 40, 6, random);
+  begin(&p, reach);
+  paint(&p);
+  for (int step = 0; step < 400; step++) {
+    const size_t i = gsl_rng_uniform_int(random, p.discs.count);
+    const double most = step % 5 ? 0.5 : 40; /* within its bands, or to others */
+    p.discs.x[i] = into_box(&p, 0, p.discs.x[i] + most * (2 * gsl_rng_uniform(random) - 1));
+    p.discs.y[i] = into_box(&p, 1, p.discs.y[i] + most * (2 * gsl_rng_uniform(random) - 1));
+    paint(&p);
+    cr_assert(stale_bands(&p.occupation) <= 8, "step %d: %zu bands painted for one disc", step,
+              stale_bands(&p.occupation));
+    const char *difference = compare_with_fresh(&p);
+    cr_assert_null(difference, "seed %lu, reach %d, step %d: %s differ", seed, reach, step, difference);
+  }
+  paint(&p);
+  cr_expect_eq(stale_bands(&p.occupation), 0, "nothing has moved");
+  end(&p);
+  gsl_rng_free(random);
+}
+
+Test(occupation, only_bands_that_a_disc_moves_in_leaves_or_enters_are_painted)
+{
+  for (int reach = 0; reach < 2; reach++) {
+    check_few_move(SIDES_PERIODIC, reach, 61 + (unsigned long)reach);
+    check_few_move(SIDES_CLOSED, reach, 71 + (unsigned long)reach);
   }
 }
 

@@ -1,40 +1,8 @@
 /* The program from outside: its contracts on command line, exit codes and files. DELBM is the path of the built
  * program. */
-#include <criterion/criterion.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <sys/wait.h>
-#include <unistd.h>
+#include "shell.h"
 
-static char folder[] = "/tmp/delbm-test-XXXXXX";
-
-static void enter_folder(void)
-{
-  cr_assert(mkdtemp(folder) && chdir(folder) == 0);
-}
-
-static void leave_folder(void)
-{
-  char command[64];
-  snprintf(command, sizeof command, "rm -rf %s", folder);
-  cr_assert_eq(chdir("/") + system(command), 0);
-}
-
-TestSuite(program, .init = enter_folder, .fini = leave_folder, .timeout = 60);
-
-/* Runs a shell command in the folder, output into `output` and `errors`; returns its exit code. %s is the program. */
-static int shell(const char *format, ...)
-{
-  char command[1024];
-  va_list arguments;
-  va_start(arguments, format);
-  vsnprintf(command, sizeof command, format, arguments);
-  va_end(arguments);
-  const int result = system(command);
-  return WIFEXITED(result) ? WEXITSTATUS(result) : -1;
-}
+TestSuite(program, .init = shell_enter, .fini = shell_leave, .timeout = 60);
 
 static char *read_file(const char *path)
 {
@@ -55,12 +23,6 @@ static bool contains(const char *path, const char *text)
   return found;
 }
 
-static void write_file(const char *path, const char *text)
-{
-  FILE *file = fopen(path, "w");
-  cr_assert(file && fputs(text, file) >= 0 && fclose(file) == 0);
-}
-
 /* Discs that fall, meet each other and the walls: enough of everything, in a second. */
 static const char *const crowd = "title: crowd\n"
                                  "domain: {size: [200, 180]}\n"
@@ -74,7 +36,7 @@ static const char *const crowd = "title: crowd\n"
 
 Test(program, says_how_threads_are_bound)
 {
-  write_file("box.yaml", "domain: {size: [80, 80]}\nfluid: {viscosity: 0.05}\nrun: {steps: 4}\n");
+  shell_write("box.yaml", "domain: {size: [80, 80]}\nfluid: {viscosity: 0.05}\nrun: {steps: 4}\n");
   cr_expect_eq(
       shell("OMP_NUM_THREADS=1 OMP_PLACES=cores OMP_PROC_BIND=close %s run box.yaml --out b 2>err >/dev/null", DELBM),
       0);
@@ -87,7 +49,7 @@ Test(program, says_how_threads_are_bound)
 Test(program, particles_csv_has_the_same_bits_for_any_number_of_threads)
 {
   static const int threads[] = {1, 2, 3, 4, 7};
-  write_file("crowd.yaml", crowd);
+  shell_write("crowd.yaml", crowd);
   for (size_t k = 0; k < sizeof threads / sizeof threads[0]; k++)
     cr_assert_eq(
         shell("OMP_NUM_THREADS=%d %s run crowd.yaml --quiet --out t%d >/dev/null", threads[k], DELBM, threads[k]), 0);
@@ -99,7 +61,7 @@ Test(program, particles_csv_has_the_same_bits_for_any_number_of_threads)
 
 Test(program, a_run_leaves_the_files_that_scripts_rely_on)
 {
-  write_file("crowd.yaml", crowd);
+  shell_write("crowd.yaml", crowd);
   cr_assert_eq(shell("%s run crowd.yaml --set run.steps=40 --set output.frames.every=20 --out o >out 2>err", DELBM), 0);
   cr_expect(contains("o/particles.csv",
                      "step,id,x,y,vx,vy,omega,angle,fx,fy,torque,contact_fx,contact_fy,contact_torque\n0,0,"));
@@ -120,12 +82,12 @@ Test(program, a_run_leaves_the_files_that_scripts_rely_on)
 
 Test(program, a_diverging_run_stops_says_so_and_keeps_what_it_wrote)
 {
-  write_file("light.yaml", "domain: {size: [64, 64]}\n"
-                           "fluid: {viscosity: 0.05}\n"
-                           "coupling: {solve: explicit-averaged}\n"
-                           "particles: {density: 0.3, gravity: [0, -1e-3], discs: [{radius: 8, position: [32, 32]}]}\n"
-                           "run: {steps: 5000}\n"
-                           "output: {every: 1}\n");
+  shell_write("light.yaml", "domain: {size: [64, 64]}\n"
+                            "fluid: {viscosity: 0.05}\n"
+                            "coupling: {solve: explicit-averaged}\n"
+                            "particles: {density: 0.3, gravity: [0, -1e-3], discs: [{radius: 8, position: [32, 32]}]}\n"
+                            "run: {steps: 5000}\n"
+                            "output: {every: 1}\n");
   cr_assert_eq(shell("%s run light.yaml --out o >out 2>err", DELBM), 1);
   cr_expect(contains("out", "status=diverged"));
   cr_expect(contains("err", "diverged at step"));
@@ -135,8 +97,8 @@ Test(program, a_diverging_run_stops_says_so_and_keeps_what_it_wrote)
 
 Test(program, exit_codes_tell_what_went_wrong)
 {
-  write_file("good.yaml", "domain: {size: [32, 32]}\nfluid: {viscosity: 0.1}\nrun: {steps: 3}\n");
-  write_file("bad.yaml", "domain: {size: [32, 32]}\nfluid: {viscosty: 0.1}\nrun: {steps: 3}\n");
+  shell_write("good.yaml", "domain: {size: [32, 32]}\nfluid: {viscosity: 0.1}\nrun: {steps: 3}\n");
+  shell_write("bad.yaml", "domain: {size: [32, 32]}\nfluid: {viscosty: 0.1}\nrun: {steps: 3}\n");
   cr_expect_eq(shell("%s run good.yaml --quiet >/dev/null", DELBM), 0);
   cr_expect_eq(shell("test -f out/good/run.json"), 0, "the default folder is out/NAME");
   cr_expect_eq(shell("%s run 2>err", DELBM), 2);
@@ -163,9 +125,9 @@ Test(program, help_and_version_are_everywhere)
 
 Test(program, info_names_the_stages_that_run_and_those_left_out)
 {
-  write_file("crowd.yaml", crowd);
-  write_file("empty.yaml",
-             "domain: {size: [64, 64], left: periodic, right: periodic}\nfluid: {viscosity: 0.1}\nrun: {steps: 3}\n");
+  shell_write("crowd.yaml", crowd);
+  shell_write("empty.yaml",
+              "domain: {size: [64, 64], left: periodic, right: periodic}\nfluid: {viscosity: 0.1}\nrun: {steps: 3}\n");
   cr_assert_eq(shell("%s info crowd.yaml >crowd.txt && %s info empty.yaml >empty.txt", DELBM, DELBM), 0);
   cr_expect_eq(shell("grep -q 'occupation every step' crowd.txt && grep -q 'pairs and sides' crowd.txt"), 0);
   cr_expect_eq(shell("grep -q 'occupation left out' empty.txt && grep -q 'exchange   left out' empty.txt"), 0);
@@ -174,7 +136,7 @@ Test(program, info_names_the_stages_that_run_and_those_left_out)
 
 Test(program, analyse_reports_a_run_and_refuses_what_is_none)
 {
-  write_file("crowd.yaml", crowd);
+  shell_write("crowd.yaml", crowd);
   cr_assert_eq(shell("%s run crowd.yaml --set particles.gravity=[0,-4e-4] --quiet --out o >/dev/null", DELBM), 0);
   cr_assert_eq(shell("%s analyse o --json o/analysis.json --tables >out 2>err", DELBM), 0);
   cr_expect(contains("out", "settling.interface_speed") && !contains("out", "body.") && !contains("out", "pair."));
@@ -188,7 +150,7 @@ Test(program, analyse_reports_a_run_and_refuses_what_is_none)
 
 Test(program, an_interrupted_run_ends_in_order)
 {
-  write_file("crowd.yaml", crowd);
+  shell_write("crowd.yaml", crowd);
   cr_assert_eq(shell("timeout -s INT 1 %s run crowd.yaml --set run.steps=100000000 --quiet --out o >out 2>err; "
                      "grep -q status=interrupted out",
                      DELBM),

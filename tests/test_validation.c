@@ -1,29 +1,10 @@
 /* The paper's cases, smaller and shorter, from outside: what cases/reproduce does at full size. Each holds the program to
  * published or independent values (cases/NAME/reference.csv). */
-#include <criterion/criterion.h>
+#include "shell.h"
+
 #include <math.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-static char folder[] = "/tmp/delbm-test-XXXXXX";
-
-static void enter_folder(void)
-{
-  cr_assert(mkdtemp(folder) && chdir(folder) == 0);
-}
-
-static void leave_folder(void)
-{
-  char command[64];
-  snprintf(command, sizeof command, "rm -rf %s", folder);
-  cr_assert_eq(chdir("/") + system(command), 0);
-}
-
-TestSuite(validation, .init = enter_folder, .fini = leave_folder, .timeout = 900);
+TestSuite(validation, .init = shell_enter, .fini = shell_leave, .timeout = 900);
 
 /* Runs a case of the source with further settings, results into folder `out`. */
 static void run(const char *out, const char *name, const char *settings)

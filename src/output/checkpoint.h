@@ -11,10 +11,9 @@
 
 /* What a run had written when the checkpoint was taken. */
 struct run_record {
-  int64_t table_bytes;  /* length of particles.csv */
-  int64_t fields_bytes; /* and of fields.h5; 0 where there is none */
-  double seconds;       /* wall time of the run */
-  double output;        /* of which spent on output */
+  int64_t table_bytes; /* length of particles.csv */
+  double seconds;      /* wall time of the run */
+  double output;       /* of which spent on output */
 };
 
 enum { CHECKPOINT_KERNEL = 32 };

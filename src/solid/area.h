@@ -1,6 +1,6 @@
 /* Areas of the cells that a disc covers, row by row, by line tables (disc_area.h): the arithmetic of the occupation
- * stage, compiled per instruction set from one source (area_kernel.c). Only the rim is evaluated; cells within it are
- * covered whole. */
+ * stage, compiled per instruction set from one source (area_kernel.c). Of a disc wider
+ * than one line table only the rim is evaluated: cells within it are covered whole. */
 #ifndef DELBM_SOLID_AREA_H
 #define DELBM_SOLID_AREA_H
 

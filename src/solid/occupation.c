@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+_Static_assert(BAND_ROWS + 2 <= AREA_ROWS, "the rows of a band, and one beyond on each side");
+
 enum { SLACK = AREA_PAD }; /* elements past a band's last share that kernels may touch */
 
 /* Rows and columns that a disc can touch. */
