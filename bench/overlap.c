@@ -81,6 +81,7 @@ struct by_cells {
 static bool by_cells_create(struct by_cells *c, struct status *status)
 {
   *c = (struct by_cells){.scene = scene_box(64, 64, 0.05, SIDES_PERIODIC), .random = gsl_rng_alloc(gsl_rng_mt19937)};
+  c->scene.contact.area = AREA_CELLS;
   for (int k = 0; k < 2; k++) scene_add_disc(&c->scene, radius, 2, 32, 32);
   return discs_create(&c->discs, &c->scene, status) &&
          occupation_create(&c->occupation, &c->scene, &c->discs, 0, status) && overlap_create(&c->pairs, 2, status);

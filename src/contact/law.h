@@ -31,11 +31,11 @@ static inline double contact_damping(const struct contact_law *law, double inver
   return 2 * law->damping * sqrt(under_root);
 }
 
-/* Force that pushes the two apart, for overlap `area` and approach velocity `closing`. */
-static inline double contact_force(const struct contact_law *law, double area, double closing, double inverse_mass)
+/* Force that pushes the two apart, for overlap `area`, approach velocity `closing` and `damping` eta. */
+static inline double contact_force(const struct contact_law *law, double area, double closing, double damping)
 {
   if (area <= 0) return 0;
-  return fmax(0, law->stiffness * area + contact_damping(law, inverse_mass) * closing);
+  return fmax(0, law->stiffness * area + damping * closing);
 }
 
 #endif

@@ -2,16 +2,22 @@
 
 #include <math.h>
 
-/* asin(s) - s sqrt(1 - s^2), the area of the segment of a unit disc that a chord of half-length s <= 1/4 cuts off:
- * the integral of 2 s^2/sqrt(1 - s^2), term by term. */
-static double small_segment(double s)
+/* asin(s) - s sqrt(1 - s^2), the area of the segment of a unit disc that a chord of half-length s <= 1/4 cuts off: s^3
+ * times a polynomial in z = s^2, interpolated at Chebyshev points from the series 2/3 + z/5 + 3 z^2/28 + ...; relative
+ * error 4e-18. */
+static inline double small_segment(double s)
 {
-  double power = 2 * s * s * s, sum = power / 3;
-  for (int n = 1; n < 14; n++) {
-    power *= s * s * (2 * n - 1) / (2 * n);
-    sum += power / (2 * n + 3);
-  }
-  return sum;
+  const double z = s * s;
+  double p = 0.026432541100717914;
+  p = p * z + 0.023936430985272154;
+  p = p * z + 0.030123858498508835;
+  p = p * z + 0.03785887025065117;
+  p = p * z + 0.04971594631909841;
+  p = p * z + 0.0694444439896265;
+  p = p * z + 0.10714285714563496;
+  p = p * z + 0.1999999999999935;
+  p = p * z + 2.0 / 3;
+  return s * z * p;
 }
 
 /* Area of the segment of a disc beyond a chord at signed distance x from its centre: sector less triangle. */

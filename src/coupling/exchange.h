@@ -8,7 +8,7 @@
  *        | M0    0    -M1y |
  *   M =  | 0     M0    M1x |     J: impulse of all contacts of the step.
  *        | -M1y  M1x   M2  |
- * The gather stops short of J: it leaves A^-1 and A^-1 R, and contacts (sim/motion.c), however many sub-steps they
+ * The gather stops short of J: it leaves A^-1 and A^-1 R, and contacts (sim/contacts.c), however many sub-steps they
  * take, add A^-1 J. The sweep then runs with the new velocities and needs no reduction.
  *
  * Light discs. m_f counts all fluid inside the disc, but only M0/2 of it follows within the step; the rest, in partly

@@ -19,7 +19,7 @@ struct simulation {
   struct occupation occupations[2]; /* at the start of the present step, and of the next; one where no disc moves */
   int present;
   struct exchange exchange;
-  struct motion motion;
+  struct contacts contacts;
   struct team team;
   struct tuning tuning;
   struct stage_times times;
@@ -59,7 +59,7 @@ static bool create_discs(struct simulation *s, struct status *status)
          occupation_create(&s->occupations[0], s->scene, &s->discs, s->plan.reach, status) &&
          (!moving || occupation_create(&s->occupations[1], s->scene, &s->discs, s->plan.reach, status)) &&
          exchange_create(&s->exchange, s->scene, &s->discs, status) &&
-         motion_create(&s->motion, s->scene, &s->plan, &s->discs, status);
+         contacts_create(&s->contacts, s->scene, &s->plan, &s->discs, status);
 }
 
 /* Occupation where the discs are. */
@@ -96,7 +96,7 @@ bool simulation_create(struct simulation **simulation, const struct scene *scene
 void simulation_destroy(struct simulation *s)
 {
   if (!s) return;
-  motion_destroy(&s->motion);
+  contacts_destroy(&s->contacts);
   exchange_destroy(&s->exchange);
   for (int k = 0; k < 2; k++) occupation_destroy(&s->occupations[k]);
   discs_destroy(&s->discs);
@@ -127,8 +127,11 @@ static void step(struct simulation *s, double *since)
     stage_exchange(&s->exchange, &s->flow.constants, now, &s->discs, s->step, &s->team);
     charge(s, STAGE_EXCHANGE, since);
     if (s->team.stop) return;
-    stage_contact(&s->motion, now, &s->exchange, &s->discs, s->step, &s->team);
+    stage_contact(&s->contacts, now, &s->exchange, &s->discs, &s->team);
     charge(s, STAGE_CONTACT, since);
+    if (s->team.stop) return;
+    stage_motion(&s->contacts, &s->exchange, &s->discs, s->step, &s->team);
+    charge(s, STAGE_EXCHANGE, since);
     if (s->team.stop) return;
     if (moving) stage_occupation(next, &s->discs, &s->team);
     charge(s, STAGE_OCCUPATION, since);
@@ -234,7 +237,7 @@ static bool store_state(struct simulation *s, struct store *store, struct status
          store_bytes(store, &s->max_mach, sizeof s->max_mach, status) && flow_store(&s->flow, store, status) &&
          (!s->plan.exchange ||
           (discs_store(&s->discs, store, status) && exchange_store(&s->exchange, s->discs.count, store, status) &&
-           motion_store(&s->motion, store, status))) &&
+           contacts_store(&s->contacts, store, status))) &&
          store_bytes(store, &s->times, sizeof s->times, status); /* last: they differ from run to run */
 }
 
@@ -312,7 +315,7 @@ void simulation_report(struct simulation *s, struct simulation_report *report)
       .mass_drift = fabs(diagnostics_totals(&s->flow.populations, s->scene->domain.side).excess_mass) / cells,
       .momentum_drift = momentum_drift(s),
       .max_mach = s->max_mach,
-      .max_substeps = s->plan.exchange ? s->motion.most_substeps : 1};
+      .max_substeps = s->plan.exchange ? s->contacts.most_substeps : 1};
   tuning_text(&s->tuning, report->plan);
   threads_binding(report->binding);
 }

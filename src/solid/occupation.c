@@ -65,7 +65,9 @@ bool occupation_create(struct occupation *o, const struct scene *scene, const st
                            .reach = reach,
                            .minimum = 0.95,
                            .area = area_find(scene->fluid.kernel),
-                           .find_pairs = scene->contact.search == SEARCH_GRID,
+                           .search = scene->contact.search != SEARCH_GRID ? PAIRS_NONE
+                                     : scene->contact.area == AREA_CELLS  ? PAIRS_WITH_AREA
+                                                                          : PAIRS_ONCE,
                            .discs = discs->count,
                            .band_count = (scene->domain.size[1] + BAND_ROWS - 1) / BAND_ROWS};
   size_t rows = 0;
@@ -449,46 +451,94 @@ static void share_cell(struct occupation *o, struct band *band, const struct run
   band->shared_owners += owners;
 }
 
-/* True if a run before runs[second], other than runs[first], covers the cell: it is then shared on their account. */
-static bool shared_earlier(const struct run *row, size_t first, size_t second, int x)
+/* Two runs of a row that meet; runs before `open` end before them. */
+struct encounter {
+  const struct run *row;
+  size_t count, open, first, second;
+};
+
+/* True if a run before the second, other than the first, covers the cell: it is then shared on their account. */
+static bool shared_earlier(const struct encounter *e, int x)
 {
-  for (size_t r = 0; r < second; r++)
-    if (r != first && covers(&row[r], x)) return true;
+  for (size_t r = e->open; r < e->second; r++)
+    if (r != e->first && covers(&e->row[r], x)) return true;
   return false;
 }
 
-/* Two runs whose reaches overlap: their discs are a candidate, and the cells that both cover are shared. */
-static bool meet(struct occupation *o, struct band *band, const struct run *row, size_t count, size_t first,
-                 size_t second, struct status *status)
+/* What (23) sums over the cells that two runs share, low .. high - 1. */
+static double cells_area(const struct occupation *o, const struct band *band, const struct run *l, const struct run *r,
+                         int low, int high)
 {
-  const struct run *l = &row[first], *r = &row[second];
-  struct pair_batch *batch = &o->batches[band - o->bands];
   double area = 0;
-  const int low = l->x > r->x ? l->x : r->x;
-  const int high = l->x + l->n < r->x + r->n ? l->x + l->n : r->x + r->n;
   for (int x = low; x < high; x++) {
     const double eps_l = band->eps[cell_of(l, x)], eps_r = band->eps[cell_of(r, x)];
     if (eps_l > 0 && eps_r > 0) area += fmax(0, eps_l + eps_r - o->minimum);
-    if (!shared_earlier(row, first, second, x)) share_cell(o, band, row + first, count - first, x);
   }
-  if (l->disc == r->disc || !o->find_pairs) return true;
+  return area;
+}
+
+static double nearest(const struct occupation *o, int axis, double d)
+{
+  const double size = o->size[axis];
+  if (!o->periodic[axis] || fabs(d) <= size / 2) return d;
+  return d > 0 ? d - size : d + size;
+}
+
+/* Whether row y is the one in which the pair is noted: that of the point where the discs' radical line crosses the line of
+ * their centres, which both cover (if one holds the other: the smaller one's centre). Both have it within reach, so that
+ * they meet in this row. A point outside of the box, where no rows are, decides nothing. */
+static bool noted_in_row(const struct occupation *o, const struct discs *discs, uint32_t a, uint32_t b, int y)
+{
+  const double dx = nearest(o, 0, o->x[b] - o->x[a]), dy = nearest(o, 1, o->y[b] - o->y[a]);
+  const double ra = discs->radius[a], rb = discs->radius[b], near = ra + rb + o->reach, d2 = dx * dx + dy * dy;
+  if (d2 >= near * near) return false;
+  const double inside = ra < rb ? 0 : 1, difference = (ra - rb) * (ra + rb);
+  const double along = d2 > (ra - rb) * (ra - rb) ? 0.5 + 0.5 * difference / d2 : inside;
+  const double at_x = o->x[a] + along * dx, at_y = o->y[a] + along * dy;
+  if (!o->periodic[0] && !(at_x > 0 && at_x < o->size[0])) return true;
+  if (!o->periodic[1] && !(at_y > 0 && at_y < o->size[1])) return true;
+  return wrap((int)floor(at_y), o->size[1]) == y;
+}
+
+static bool note_pair(struct occupation *o, int index, const struct near_pair *pair, struct status *status)
+{
+  struct pair_batch *batch = &o->batches[index];
   if (!memory_grow(&batch->pairs, &batch->capacity, batch->count + 1, sizeof *batch->pairs, "a band's pairs", status))
     return false;
-  batch->pairs[batch->count++] = (struct near_pair){
-      .a = l->disc < r->disc ? l->disc : r->disc, .b = l->disc < r->disc ? r->disc : l->disc, .cells_area = area};
+  batch->pairs[batch->count++] = *pair;
   return true;
 }
 
-static bool find_shared(struct occupation *o, int index, struct status *status)
+/* Two runs whose reaches overlap: the cells that both cover are shared, and their discs may be a pair. */
+static bool meet(struct occupation *o, int index, const struct discs *discs, const struct encounter *e,
+                 struct status *status)
+{
+  struct band *band = &o->bands[index];
+  const struct run *l = &e->row[e->first], *r = &e->row[e->second];
+  struct near_pair pair = {.a = l->disc < r->disc ? l->disc : r->disc, .b = l->disc < r->disc ? r->disc : l->disc};
+  const int low = l->x > r->x ? l->x : r->x;
+  const int high = l->x + l->n < r->x + r->n ? l->x + l->n : r->x + r->n;
+  for (int x = low; x < high; x++)
+    if (!shared_earlier(e, x)) share_cell(o, band, l, e->count - e->first, x);
+  if (pair.a == pair.b || o->search == PAIRS_NONE) return true;
+  if (o->search == PAIRS_WITH_AREA) pair.cells_area = cells_area(o, band, l, r, low, high);
+  const bool noted = o->search == PAIRS_WITH_AREA || noted_in_row(o, discs, pair.a, pair.b, index * BAND_ROWS + l->row);
+  return !noted || note_pair(o, index, &pair, status);
+}
+
+static bool find_shared(struct occupation *o, int index, const struct discs *discs, struct status *status)
 {
   struct band *band = &o->bands[index];
   o->batches[index].count = band->shared_cells = band->shared_owners = 0;
   for (int k = 0; k < BAND_ROWS; k++) {
     const struct run *row = band->runs + band->row_start[k];
-    const size_t count = band->row_end[k] - band->row_start[k];
-    for (size_t l = 0; l + 1 < count; l++)
-      for (size_t r = l + 1; r < count && row[r].reach_first < row[l].reach_end; r++)
-        if (!meet(o, band, row, count, l, r, status)) return false;
+    struct encounter e = {.row = row, .count = band->row_end[k] - band->row_start[k]};
+    for (e.first = 0; e.first + 1 < e.count; e.first++) {
+      const struct run *first = &row[e.first];
+      while (e.open < e.first && row[e.open].reach_end <= first->reach_first) e.open++;
+      for (e.second = e.first + 1; e.second < e.count && row[e.second].reach_first < first->reach_end; e.second++)
+        if (!meet(o, index, discs, &e, status)) return false;
+    }
   }
   return true;
 }
@@ -512,7 +562,8 @@ void stage_occupation(struct occupation *o, const struct discs *discs, struct te
   if (team->stop) return;
 #pragma omp for schedule(static)
   for (int k = 0; k < o->band_count; k++)
-    if (o->stale[k] && (!paint_band(o, k, discs, &status) || !find_shared(o, k, &status))) team_fail(team, &status);
+    if (o->stale[k] && (!paint_band(o, k, discs, &status) || !find_shared(o, k, discs, &status)))
+      team_fail(team, &status);
 #pragma omp single
   {
     o->painted = true;

@@ -43,10 +43,18 @@ struct run {
   size_t place;  /* where place[] keeps the run's number in its band */
 };
 
-/* Two discs, lower index first, that come within reach in a row, and what (23) adds to their overlap area there. */
+/* Two discs, lower index first, that are within reach of each other, and what (23) adds to their overlap area in a row.
+ */
 struct near_pair {
   uint32_t a, b;
   double cells_area;
+};
+
+/* What occupation notes of discs that meet in a row. */
+enum pair_search {
+  PAIRS_NONE,      /* nothing: another search finds them */
+  PAIRS_ONCE,      /* each pair with a gap below the reach, in the row of the place between them */
+  PAIRS_WITH_AREA, /* each in every row where they meet, with the area by cells */
 };
 
 /* Pairs found together, in the order found. */
@@ -74,7 +82,7 @@ struct occupation {
   double three_nu; /* tau - 1/2 of (19) */
   int reach;       /* cells by which runs are widened in the search for pairs, 0 or 1 */
   double minimum;  /* A_m of (23) */
-  bool find_pairs; /* false where another search finds them */
+  enum pair_search search;
 
   const struct area_kernel *area;
 
