@@ -7,6 +7,7 @@ const struct bench *bench_at(size_t index)
   static const struct bench all[] = {
       {"sweep", "how fast is the fluid sweep, against a plain read-modify-write of its memory?", bench_sweep},
       {"step", "what does a step with discs cost, stage by stage, against one without?", bench_step},
+      {"occupation", "what do the areas of covered cells cost, and the stage that lays them out?", bench_occupation},
       {"contact", "what does finding contacts by the grid cost, against linked cells?", bench_contact},
       {"drag", "how does the drag of a square array depend on form, rates and viscosity?", bench_drag},
       {"overlap", "how does the overlap area grow with distance, and how does the one by cells differ?", bench_overlap},

@@ -34,6 +34,7 @@ struct lens lens_of_discs(double ra, double rb, double d)
   if (d <= fabs(ra - rb)) return (struct lens){M_PI * least * least, 0};
   const double product = (ra + rb - d) * (d + ra - rb) * (d - ra + rb) * (d + ra + rb);
   const double half_chord = sqrt(product) / (2 * d);
+  if (ra == rb) return (struct lens){2 * disc_segment(ra, half_chord, d / 2), 2 * half_chord};
   const double xa = (d * d + (ra - rb) * (ra + rb)) / (2 * d), xb = d - xa;
   return (struct lens){disc_segment(ra, half_chord, xa) + disc_segment(rb, half_chord, xb), 2 * half_chord};
 }

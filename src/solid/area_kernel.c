@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdbool.h>
+#include <string.h>
 
 #define PASTE(a, b)  a##_##b
 #define NAME(a, b)   PASTE(a, b)
@@ -36,10 +37,13 @@ static inline double arcsine_rest(double z)
 }
 
 /* Grid lines at integer places, seen from a disc's centre: distance t, half chord h (0 beyond the disc) and D(t). */
-enum { NARROW = 32 }; /* lines of a table; discs with more are taken piece by piece */
+enum {
+  NARROW = 64,           /* lines of a table; discs with more are taken tile by tile */
+  TILE = NARROW - VECTOR /* cells of a tile: vectors may read past their lines */
+};
 
 struct lines {
-  _Alignas(64) double t[NARROW], h[NARROW], area[NARROW];
+  _Alignas(64) double t[NARROW + VECTOR], h[NARROW + VECTOR], area[NARROW + VECTOR];
 };
 
 static inline double half_chord(double radius, double t)
@@ -71,9 +75,9 @@ static inline void lines_at(double radius, double centre, int first, int count, 
   }
 }
 
-/* area(a, b) of the corners of column lines a and the one row line b. */
-static inline void corners(double radius, const struct lines *rows, int b, int count, const struct lines *columns,
-                           double *restrict corner)
+/* area(a, b) of the corners of `count` column lines, from line `first` on, and the one row line b. */
+static inline void corners(double radius, const struct lines *rows, int b, int first, int count,
+                           const struct lines *columns, double *restrict corner)
 {
   const double t_b = rows->t[b], h_b = rows->h[b], area_b = rows->area[b];
   const double whole = M_PI * radius * radius, above = 0.5 * whole - 2 * area_b; /* of the part y > b */
@@ -82,7 +86,7 @@ static inline void corners(double radius, const struct lines *rows, int b, int c
   const int n = whole_vectors(count);
 #pragma omp simd
   for (int k = 0; k < n; k++) {
-    const double t = columns->t[k], area = columns->area[k];
+    const double t = columns->t[first + k], area = columns->area[first + k];
     const double within = 0.25 * whole - area - area_b + t * t_b;
     const double right = t_b < 0 ? 0.5 * whole - 2 * area : 0;
     const double leftward = t_b < 0 ? left - 2 * area : left;
@@ -136,39 +140,56 @@ static void narrow_rows(double radius, double x, const struct lines *row_lines, 
   _Alignas(64) double table[AREA_ROWS + 1][NARROW + 2 * VECTOR];
   struct lines column_lines;
   lines_at(radius, x, column, columns, &column_lines);
-  for (int r = from; r <= end; r++) corners(radius, row_lines, r - from, columns, &column_lines, table[r - from]);
+  for (int r = from; r <= end; r++) corners(radius, row_lines, r - from, 0, columns, &column_lines, table[r - from]);
   for (int r = from; r < end; r++) {
     cells(table[r - from], table[r - from + 1], e->first[r], e->end[r], e->full[r], e->full_end[r], eps);
     eps += e->end[r] - e->first[r];
   }
 }
 
-/* Cells `first` .. end - 1, counted from `column`, between row lines r and r + 1: part of a rim. */
-static void rim_cells(double radius, double x, int column, const struct lines *row_lines, int r, int first, int end,
-                      double *eps)
+/* Of cells first .. end - 1 of a row those in the tile of lines that begins at `tile`, between row lines r and r + 1: part
+ * of a rim. `eps` is that of cell `first`. */
+static void rim_cells(double radius, const struct lines *row_lines, int r, const struct lines *column_lines, int tile,
+                      int first, int end, double *eps)
 {
-  enum { PIECE = NARROW - VECTOR };
-  _Alignas(64) double low[NARROW + 2 * VECTOR], high[NARROW + 2 * VECTOR];
-  struct lines column_lines;
-  for (int k = 0; k < end - first; k += PIECE) {
-    const int n = end - first - k < PIECE ? end - first - k : PIECE;
-    lines_at(radius, x, column + first + k, n + 1, &column_lines);
-    corners(radius, row_lines, r, n + 1, &column_lines, low);
-    corners(radius, row_lines, r + 1, n + 1, &column_lines, high);
-    cells(low, high, 0, n, n, n, eps + k);
-  }
+  const int low = first > tile ? first : tile, high = end < tile + TILE ? end : tile + TILE, n = high - low;
+  _Alignas(64) double below[TILE + 2 * VECTOR], above[TILE + 2 * VECTOR], area[TILE + VECTOR];
+  if (n <= 0) return;
+  corners(radius, row_lines, r, low - tile, n + 1, column_lines, below);
+  corners(radius, row_lines, r + 1, low - tile, n + 1, column_lines, above);
+  cells(below, above, 0, n, n, n, area);
+  memcpy(eps + (low - first), area, (size_t)n * sizeof *eps);
 }
 
+/* True if a cell of some row's rim lies in the tile. */
+static bool rim_in_tile(const struct area_extents *e, int from, int end, int tile)
+{
+  for (int r = from; r < end; r++)
+    if ((e->first[r] < tile + TILE && e->full[r] > tile) || (e->full_end[r] < tile + TILE && e->end[r] > tile))
+      return true;
+  return false;
+}
+
+/* A disc with more lines than one table holds, tile by tile; those without a rim are passed over. */
 static void wide_rows(double radius, double x, const struct lines *row_lines, int from, int end,
                       const struct area_extents *e, double *eps)
 {
-  const int column = (int)floor(x - radius);
+  const int column = (int)floor(x - radius), columns = (int)ceil(x + radius) - column + 1;
+  double *row[AREA_ROWS];
   for (int r = from; r < end; r++) {
-    const int left = e->full[r] - e->first[r], within = e->full_end[r] - e->full[r], right = e->end[r] - e->full_end[r];
-    rim_cells(radius, x, column, row_lines, r - from, e->first[r], e->full[r], eps);
-    for (int k = 0; k < within; k++) eps[left + k] = 1;
-    rim_cells(radius, x, column, row_lines, r - from, e->full_end[r], e->end[r], eps + left + within);
-    eps += left + within + right;
+    row[r] = eps;
+    for (int k = e->full[r]; k < e->full_end[r]; k++) eps[k - e->first[r]] = 1;
+    eps += e->end[r] - e->first[r];
+  }
+  for (int tile = 0; tile < columns; tile += TILE) {
+    struct lines column_lines;
+    if (!rim_in_tile(e, from, end, tile)) continue;
+    lines_at(radius, x, column + tile, TILE + 1, &column_lines);
+    for (int r = from; r < end; r++) {
+      rim_cells(radius, row_lines, r - from, &column_lines, tile, e->first[r], e->full[r], row[r]);
+      rim_cells(radius, row_lines, r - from, &column_lines, tile, e->full_end[r], e->end[r],
+                row[r] + (e->full_end[r] - e->first[r]));
+    }
   }
 }
 
