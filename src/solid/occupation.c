@@ -234,7 +234,7 @@ struct stretch {
   size_t disc;
   int from, end;  /* its rows, of which those below 0 and beyond its last only announce it */
   int to_band;    /* what to add to such a row for one of the band */
-  bool wraps;     /* it may lie across the left and right side of a periodic box */
+  bool inside;    /* all of it, with its reach, between left and right */
   int reach_from; /* the rows that its extents are needed of */
   int reach_end;
 };
@@ -251,8 +251,7 @@ static bool stretch_of(const struct occupation *o, const struct discs *discs, in
                         .from = low > -reach ? low : -reach,
                         .end = high < rows + reach ? high : rows + reach,
                         .to_band = -low,
-                        .wraps = o->periodic[0] &&
-                                 (o->column[disc] - reach < 0 || o->column[disc] + columns + reach > o->size[0])};
+                        .inside = o->column[disc] - reach >= 0 && o->column[disc] + columns + reach <= o->size[0]};
   s->reach_from = s->from - reach > 0 ? s->from - reach : 0;
   s->reach_end = s->end + reach < rows ? s->end + reach : rows;
   return s->from < s->end;
@@ -338,12 +337,35 @@ static void enter_row(const struct occupation *o, struct band *band, const struc
   p.reach_end += column;
   p.first = own ? column + e->first[at] : p.reach_first;
   p.end = own ? column + e->end[at] : p.reach_first;
-  if (!s->wraps) {
+  if (s->inside || !o->periodic[0]) {
     enter_piece(o, band, s, &p, k, 0, 0, cell);
     return;
   }
   const int shifts[3] = {0, o->size[0], -o->size[0]};
   for (int n = 0, count = 0; n < 3 && count < 2; n++) count += enter_piece(o, band, s, &p, k, shifts[n], count, cell);
+}
+
+/* enter_row for rows from .. end - 1 of a disc inside the box, where runs reach no further than their cells: nearly all. */
+static void enter_rows_inside(const struct occupation *o, struct band *band, const struct stretch *s,
+                              const struct area_extents *e, int from, int end, size_t cell)
+{
+  const double left = o->column[s->disc] + 0.5 - o->x[s->disc], low = o->row[s->disc] + 0.5 - o->y[s->disc];
+  for (int k = from; k < end; k++) {
+    const int at = k - s->reach_from, row = k + s->to_band, n = e->end[at] - e->first[at];
+    const int first = o->column[s->disc] + e->first[at];
+    band->runs[band->row_end[row]++] = (struct run){.x = first,
+                                                    .n = n,
+                                                    .reach_first = first,
+                                                    .reach_end = first + n,
+                                                    .disc = (uint32_t)s->disc,
+                                                    .row = row,
+                                                    .rx = left + e->first[at],
+                                                    .ry = low + k,
+                                                    .cell = cell,
+                                                    .place = 2 * (o->first_row[s->disc] + (size_t)k)};
+    sort_last(band, row);
+    cell += (size_t)n;
+  }
 }
 
 /* The runs of a stretch, and the areas of their cells, which begin at `cells`; sets where they end. */
@@ -363,11 +385,15 @@ static bool paint_stretch(struct occupation *o, struct band *band, const struct 
     o->area->rows(radius, x, y, o->row[disc] + s->reach_from, own - s->reach_from, own_end - s->reach_from, &e,
                   band->eps + *cells);
   size_t cell = *cells;
+  *cells = end;
+  if (s->inside && o->reach == 0) {
+    enter_rows_inside(o, band, s, &e, own, own_end, cell);
+    return true;
+  }
   for (int k = s->from; k < s->end; k++) {
     enter_row(o, band, s, &e, k, cell);
     if (k >= own && k < own_end) cell += (size_t)(e.end[k - s->reach_from] - e.first[k - s->reach_from]);
   }
-  *cells = end;
   return true;
 }
 
@@ -380,7 +406,7 @@ static bool make_room(struct occupation *o, int index, const struct discs *discs
   for (size_t d = o->band_start[index]; d < o->band_start[index + 1]; d++)
     for (int image = -o->periodic[1]; image <= o->periodic[1]; image++)
       if (stretch_of(o, discs, index, o->band_discs[d], image, &s))
-        for (int k = s.from; k < s.end; k++) room[k + s.to_band] += s.wraps ? 2 : 1;
+        for (int k = s.from; k < s.end; k++) room[k + s.to_band] += s.inside || !o->periodic[0] ? 1 : 2;
   for (int k = 0; k < BAND_ROWS; k++) {
     band->row_start[k] = band->row_end[k] = total;
     total += room[k];
