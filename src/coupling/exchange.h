@@ -42,11 +42,6 @@ struct response {
   double dvx, dvy, domega;
 };
 
-/* Velocity of a disc as the fluid sees it in the sweep. */
-struct surface_velocity {
-  double vx, vy, omega;
-};
-
 struct exchange {
   enum coupling_solve solve;
   double gravity[2];

@@ -1,18 +1,21 @@
 /* Kernels that read moments and write no populations, compiled per precision and instruction set as the sweep is.
  *
- * gather_run  moment_sums over a run of cells. Moments are formed in the precision of the populations, sums in double.
- *             A run is taken eight cells at a time; beyond its end cells are read too, with a share of zero.
- * paint_run   adds a run to the row's cover (sweep.h), likewise.
+ * gather_row  moment_sums over the runs of a row. Moments are formed in the precision of the populations, sums in
+ *             double. A run is taken eight cells at a time; beyond its end cells are read too, with a share of zero.
+ * paint_row   the row's cover (sweep.h), from left to right, likewise: zeros up to a run, then the run, which is added
+ *             where another has been.
  * scan_row    the largest speed of a row. What is not finite may escape a maximum, but not the sum formed beside it. */
 #include "base/lanes.h"
 #include "fluid/sweep.h"
+
+#include <stdbool.h>
 
 #define PASTE3(a, b, c) a##_##b##_##c
 #define NAME3(a, b, c)  PASTE3(a, b, c)
 #define KERNEL(part)    NAME3(part, VARIANT, REAL)
 
-extern gather_run KERNEL(gather_run);
-extern paint_run KERNEL(paint_run);
+extern gather_row KERNEL(gather_row);
+extern paint_row KERNEL(paint_row);
 extern scan_row KERNEL(scan_row);
 
 typedef REAL real_lanes __attribute__((vector_size(LANES * sizeof(REAL)), aligned(sizeof(REAL)), may_alias));
@@ -31,7 +34,7 @@ static inline lanes widen(real_lanes value)
   return __builtin_convertvector(value, lanes);
 }
 
-void KERNEL(gather_run)(void *const a[Q], int x, int n, const double *share, double rx, struct moment_sums *sums)
+static inline lanes_in_moments gather_run(void *const a[Q], int x, int n, const double *share, double rx)
 {
   const REAL *a0 = a[0], *a1 = a[1], *a2 = a[2], *a3 = a[3], *a4 = a[4], *a5 = a[5], *a6 = a[6], *a7 = a[7], *a8 = a[8];
   lanes jx_sum = {0}, jy_sum = {0}, turn = {0}, mass_sum = {0}, mx = {0}, mxx = {0}, share_sum = {0}, sx = {0};
@@ -53,25 +56,66 @@ void KERNEL(gather_run)(void *const a[Q], int x, int n, const double *share, dou
     share_sum += s;
     sx += sr;
   }
-  *(lanes_in_moments *)sums = lanes_sums((const lanes[8]){jx_sum, jy_sum, turn, mass_sum, mx, mxx, share_sum, sx});
+  return lanes_sums((const lanes[8]){jx_sum, jy_sum, turn, mass_sum, mx, mxx, share_sum, sx});
 }
 
-/* Adds to eight elements of a row buffer. */
-static inline void add(REAL *to, lanes value)
+void KERNEL(gather_row)(void *const a[Q], const struct run *runs, size_t count, const double *share,
+                        struct moment_sums *sums)
 {
-  *(real_lanes *)to = *(real_lanes *)to + __builtin_convertvector(value, real_lanes);
+  for (size_t r = 0; r < count; r++)
+    if (runs[r].n > 0)
+      *(lanes_in_moments *)&sums[r] = gather_run(a, runs[r].x, runs[r].n, share + runs[r].share, runs[r].rx);
 }
 
-void KERNEL(paint_run)(const struct row_cover *row, int x, int n, const double *share, double vx, double vy,
-                       double omega)
+/* Sets eight elements of a row buffer, or adds to them. */
+static inline void put(REAL *to, lanes value, bool add)
 {
-  REAL *b = (REAL *)row->b + x, *bvx = (REAL *)row->bvx + x, *bvy = (REAL *)row->bvy + x;
-  for (int k = 0; k < n; k += LANES) {
-    const lanes s = lanes_load(share + k) * lanes_first(n - k);
-    add(b + k, s);
-    add(bvx + k, s * vx);
-    add(bvy + k, s * (vy + omega * (k + lanes_count)));
+  real_lanes v = __builtin_convertvector(value, real_lanes);
+  if (add) v += load(to);
+  *(real_lanes *)to = v;
+}
+
+static inline void put_run(const struct row_cover *row, const struct run *run, const double *share,
+                           const struct surface_velocity *v, bool add)
+{
+  const double vx = v->vx - v->omega * run->ry, vy = v->vy + v->omega * run->rx;
+  REAL *b = (REAL *)row->b + run->x, *bvx = (REAL *)row->bvx + run->x, *bvy = (REAL *)row->bvy + run->x;
+  for (int k = 0; k < run->n; k += LANES) {
+    const lanes s = lanes_load(share + k) * lanes_first(run->n - k);
+    put(b + k, s, add);
+    put(bvx + k, s * vx, add);
+    put(bvy + k, s * (vy + v->omega * (k + lanes_count)), add);
   }
+}
+
+/* Zeros from x on, in whole vectors, until `end` is reached; returns where they end. */
+static inline int put_zeros(const struct row_cover *row, int x, int end)
+{
+  const lanes zero = {0};
+  for (; x < end; x += LANES) {
+    put((REAL *)row->b + x, zero, false);
+    put((REAL *)row->bvx + x, zero, false);
+    put((REAL *)row->bvy + x, zero, false);
+  }
+  return x;
+}
+
+void KERNEL(paint_row)(const struct row_cover *row, int nx, const struct run *runs, size_t count, const double *share,
+                       const struct surface_velocity *surface)
+{
+  int known = 0;   /* cells before this have a value, */
+  int painted = 0; /* those from this on up to there: zero */
+  for (size_t r = 0; r < count; r++) {
+    const struct run *run = &runs[r];
+    const int end = run->x + run->n;
+    if (run->n == 0) continue;
+    const bool apart = run->x >= painted;
+    known = put_zeros(row, known, apart ? run->x : end);
+    put_run(row, run, share + run->share, &surface[run->disc], !apart);
+    if (apart && known < end) known = run->x + ((run->n + LANES - 1) & -LANES);
+    if (painted < end) painted = end;
+  }
+  put_zeros(row, known, nx);
 }
 
 double KERNEL(scan_row)(void *const a[Q], int n)

@@ -7,7 +7,7 @@
 #define DELBM_FLUID_SWEEP_H
 
 #include "fluid/populations.h"
-#include "lattice/moment_sums.h"
+#include "lattice/runs.h"
 
 /* What is the same for every cell of a step. */
 struct sweep_constants {
@@ -30,14 +30,15 @@ typedef void sweep_row(void *const a[Q], int n, const struct sweep_constants *co
 /* The same for fluid alone without force, from one set of addresses to another. */
 typedef void sweep_row_between(void *const from[Q], void *const to[Q], int n, const struct sweep_constants *constants);
 
-/* Sums over n cells, read from a[i][x..x+n-1], the first of them rx to the right of the disc's centre. Up to seven
- * elements past the end of the populations and of share[] are read. */
-typedef void gather_run(void *const a[Q], int x, int n, const double *share, double rx, struct moment_sums *sums);
+/* The sums of each of `count` runs of a row, whose populations are read from a[i][x]; share[] are those of all runs. Up to
+ * seven elements past the end of the populations and of share[] are read. */
+typedef void gather_row(void *const a[Q], const struct run *runs, size_t count, const double *share,
+                        struct moment_sums *sums);
 
-/* Adds n cells from x on to a row's cover: the solid moves at (vx, vy) in the first, at vy + k omega in the k-th after
- * it. Up to seven elements past the end are read and written back as they were. */
-typedef void paint_run(const struct row_cover *row, int x, int n, const double *share, double vx, double vy,
-                       double omega);
+/* The cover of a row of nx cells by `count` runs, from left to right, of discs that move at surface[disc]; up to seven
+ * elements past its end are written. */
+typedef void paint_row(const struct row_cover *row, int nx, const struct run *runs, size_t count, const double *share,
+                       const struct surface_velocity *surface);
 
 /* Largest |j/rho|^2 of n cells; NAN if one is not finite or has no positive density. */
 typedef double scan_row(void *const a[Q], int n);
@@ -48,8 +49,8 @@ struct sweep_kernel {
   sweep_row *fluid[2];    /* [with a force?] */
   sweep_row *discs[2][2]; /* [enum coupling_form][with a force?] */
   sweep_row_between *two_arrays;
-  gather_run *gather;
-  paint_run *paint;
+  gather_row *gather;
+  paint_row *paint;
   scan_row *scan;
 };
 

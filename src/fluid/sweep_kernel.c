@@ -139,8 +139,8 @@ static void sweep_two_arrays(void *const from[Q], void *const to[Q], int n, cons
   collide_stream(from, to, n, constants, NULL, NULL, false, false, false);
 }
 
-extern gather_run KERNEL(gather_run);
-extern paint_run KERNEL(paint_run);
+extern gather_row KERNEL(gather_row);
+extern paint_row KERNEL(paint_row);
 extern scan_row KERNEL(scan_row);
 extern const struct sweep_kernel KERNEL(sweep_kernel);
 const struct sweep_kernel KERNEL(sweep_kernel) = {
@@ -150,6 +150,6 @@ const struct sweep_kernel KERNEL(sweep_kernel) = {
     .discs = {[FORM_UNIFIED] = {sweep_discs_unified, sweep_discs_unified_force},
               [FORM_OWEN] = {sweep_discs_owen, sweep_discs_owen_force}},
     .two_arrays = sweep_two_arrays,
-    .gather = KERNEL(gather_run),
-    .paint = KERNEL(paint_run),
+    .gather = KERNEL(gather_row),
+    .paint = KERNEL(paint_row),
     .scan = KERNEL(scan_row)};

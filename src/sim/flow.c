@@ -97,9 +97,8 @@ static void sweep_row_at(struct flow *f, int y, const struct sweep_discs *discs)
     return;
   }
   struct cover *cover = &f->covers[omp_get_thread_num()];
-  cover_paint(cover, runs, count, occupation_band(o, y)->share, discs->exchange->surface);
+  f->kernel->paint(&cover->row, nx, runs, count, occupation_band(o, y)->share, discs->exchange->surface);
   f->kernel->discs[f->scene->coupling.form][f->force](a, nx, &f->constants, &cover->row, momentum);
-  cover_clear(cover, runs, count);
 }
 
 /* The uniform force that cancels the mean momentum that this step leaves, along the axes that walls close. */
@@ -116,7 +115,7 @@ static void cancel_flux(struct flow *f)
 }
 
 /* Takes the moments of row y, about to be collided in the state `p`, for the discs that cover it. */
-static void gather_row(const struct flow *f, struct populations *p, struct occupation *o, int y)
+static void take_sums(const struct flow *f, struct populations *p, struct occupation *o, int y)
 {
   const struct band *band = occupation_band(o, y);
   const size_t first = band->row_start[y % BAND_ROWS], end = band->row_end[y % BAND_ROWS];
@@ -124,16 +123,13 @@ static void gather_row(const struct flow *f, struct populations *p, struct occup
   if (first == end) return;
   void *a[Q];
   populations_cells(p, 0, y, a);
-  for (size_t r = first; r < end; r++) {
-    const struct run *run = &band->runs[r];
-    if (run->n > 0) f->kernel->gather(a, run->x, run->n, band->share + run->share, run->rx, &band->sums[r]);
-  }
+  f->kernel->gather(a, band->runs + first, end - first, band->share, band->sums + first);
 }
 
 void stage_first_sums(struct flow *f, struct occupation *o)
 {
 #pragma omp for schedule(static)
-  for (int y = 0; y < f->populations.ny; y++) gather_row(f, &f->populations, o, y);
+  for (int y = 0; y < f->populations.ny; y++) take_sums(f, &f->populations, o, y);
 }
 
 void stage_sweep(struct flow *f, bool ghosts_filled, const struct sweep_discs *discs)
@@ -148,12 +144,12 @@ void stage_sweep(struct flow *f, bool ghosts_filled, const struct sweep_discs *d
     if (p->parity && !ghosts_filled) boundary_before_row(p, side, y);
     sweep_row_at(f, y, discs);
     if (p->parity) boundary_after_row(p, side, y);
-    if (discs->next && y > first + 1) gather_row(f, &after, discs->next, y - 1);
+    if (discs->next && y > first + 1) take_sums(f, &after, discs->next, y - 1);
   }
 #pragma omp barrier
   /* the ends of a thread's rows wait for their neighbours, which are another thread's */
-  if (discs->next && first < end) gather_row(f, &after, discs->next, first);
-  if (discs->next && first < end - 1) gather_row(f, &after, discs->next, end - 1);
+  if (discs->next && first < end) take_sums(f, &after, discs->next, first);
+  if (discs->next && first < end - 1) take_sums(f, &after, discs->next, end - 1);
 #pragma omp barrier
 #pragma omp single
   {

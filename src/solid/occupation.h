@@ -23,25 +23,12 @@
 #define DELBM_SOLID_OCCUPATION_H
 
 #include "base/team.h"
-#include "lattice/moment_sums.h"
+#include "lattice/runs.h"
 #include "solid/discs.h"
 
 enum { BAND_ROWS = 16 };
 
 struct area_kernel;
-
-/* Cells of one disc in one row of the box, wrapped and cut: x .. x + n - 1. Runs without cells (n = 0) only announce
- * that the disc is within reach. */
-struct run {
-  int32_t x, n;
-  int32_t reach_first, reach_end; /* cells that make discs candidates: the run's own, widened by the reach */
-  uint32_t disc;
-  int32_t row;   /* of its band */
-  double rx, ry; /* from the disc's centre to the centre of the first cell */
-  size_t cell;   /* of the first cell, in the band's eps[] */
-  size_t share;  /* of the first cell, in the band's share[] */
-  size_t place;  /* where place[] keeps the run's number in its band */
-};
 
 /* Two discs, lower index first, that are within reach of each other, and what (23) adds to their overlap area in a row.
  */
