@@ -6,17 +6,12 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Cells of one disc in one row of the box, wrapped and cut: x .. x + n - 1. Runs without cells (n = 0) only announce
- * that the disc is within reach. */
+/* Cells of one disc in one row of the box, wrapped and cut: x .. x + n - 1; none (n = 0) where the disc is only near. */
 struct run {
   int32_t x, n;
-  int32_t reach_first, reach_end; /* cells that make discs candidates: the run's own, widened by the reach */
   uint32_t disc;
-  int32_t row;   /* of its band */
-  double rx, ry; /* from the disc's centre to the centre of the first cell */
-  size_t cell;   /* of the first cell, in the band's eps[] */
-  size_t share;  /* of the first cell, in the band's share[] */
-  size_t place;  /* where place[] keeps the run's number in its band */
+  uint32_t share; /* of the first cell, in the band's share[] */
+  double rx, ry;  /* from the disc's centre to the centre of the first cell */
 };
 
 /* Sums over a run of cells of one disc (exchange.h): with share s = w_p B, r the lever arm along the row and the

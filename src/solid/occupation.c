@@ -4,12 +4,26 @@
 #include "solid/area.h"
 
 #include <math.h>
+#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
 _Static_assert(BAND_ROWS + 2 <= AREA_ROWS, "the rows of a band, and one beyond on each side");
 
 enum { SLACK = AREA_PAD }; /* elements past a band's last share that kernels may touch */
+
+/* What a run is besides its cells: those that make discs candidates, the run's own widened by the reach; where its eps
+ * begin; and where place[] keeps its number in the band. */
+struct candidate {
+  int32_t reach_first, reach_end;
+  size_t cell, place;
+};
+
+struct band_draft {
+  struct candidate *candidates; /* of each run of the band */
+  double *eps;                  /* of all cells, disc by disc */
+  size_t candidate_capacity, eps_capacity;
+};
 
 /* Rows and columns that a disc can touch. */
 static size_t most_lines(double radius)
@@ -30,7 +44,7 @@ double occupation_bytes(const struct scene *scene)
   double bytes = 0;
   for (size_t i = 0; i < scene->particles.count; i++) {
     const double radius = scene->particles.discs[i].radius;
-    bytes += most_cells(radius) * 2 * sizeof(double) + (double)(most_lines(radius) * row + disc); /* eps and shares */
+    bytes += most_cells(radius) * sizeof(double) + (double)(most_lines(radius) * row + disc);
   }
   return bytes;
 }
@@ -90,13 +104,16 @@ void occupation_destroy(struct occupation *o)
   for (int k = 0; o->bands && k < o->band_count; k++) {
     free(o->bands[k].runs);
     if (o->batches) free(o->batches[k].pairs);
-    free(o->bands[k].eps);
     free(o->bands[k].share);
     free(o->bands[k].sums);
   }
-  void *const arrays[] = {o->x,          o->y,        o->column,    o->row,    o->rows,  o->moved,
-                          o->was_row,    o->was_rows, o->first_row, o->place,  o->order, o->band_start,
-                          o->band_discs, o->stale,    o->bands,     o->batches};
+  for (size_t t = 0; t < o->draft_count; t++) {
+    free(o->drafts[t].candidates);
+    free(o->drafts[t].eps);
+  }
+  void *const arrays[] = {o->x,          o->y,        o->column,    o->row,     o->rows,  o->moved,
+                          o->was_row,    o->was_rows, o->first_row, o->place,   o->order, o->band_start,
+                          o->band_discs, o->stale,    o->bands,     o->batches, o->drafts};
   for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; k++) free(arrays[k]);
   *o = (struct occupation){0};
 }
@@ -272,20 +289,25 @@ static void reach_columns(const struct occupation *o, const struct stretch *s, c
   }
 }
 
-static int run_before(const struct run *l, const struct run *r)
+/* Of two runs of a row, by where they begin to be candidates, then by disc. */
+static bool run_before(int32_t first, uint32_t disc, const struct candidate *other, const struct run *other_run)
 {
-  return l->reach_first < r->reach_first || (l->reach_first == r->reach_first && l->disc < r->disc);
+  return first < other->reach_first || (first == other->reach_first && disc < other_run->disc);
 }
 
-/* The row's last run finds its place: nearly always where it stands, as discs come along x. */
-static void sort_last(struct band *band, int row)
+/* Enters a run into its row; nearly always last, as discs come along x. */
+static inline void enter_run(struct band *band, struct band_draft *draft, int row, const struct run *run,
+                             const struct candidate *candidate)
 {
   const size_t start = band->row_start[row];
-  size_t at = band->row_end[row] - 1;
-  if (at == start || !run_before(&band->runs[at], &band->runs[at - 1])) return;
-  const struct run last = band->runs[at];
-  for (; at > start && run_before(&last, &band->runs[at - 1]); at--) band->runs[at] = band->runs[at - 1];
-  band->runs[at] = last;
+  size_t at = band->row_end[row]++;
+  for (; at > start && run_before(candidate->reach_first, run->disc, &draft->candidates[at - 1], &band->runs[at - 1]);
+       at--) {
+    band->runs[at] = band->runs[at - 1];
+    draft->candidates[at] = draft->candidates[at - 1];
+  }
+  band->runs[at] = *run;
+  draft->candidates[at] = *candidate;
 }
 
 /* Cells of a row before the box wraps or cuts it: its own, and those within reach of them. */
@@ -300,33 +322,31 @@ static int clamp(int at, int most)
 
 /* The piece moved by `shift` columns into the box and cut to it, as piece number `number` of the disc's row k. Returns
  * false if nothing of it, nor its reach, is inside. */
-static bool enter_piece(const struct occupation *o, struct band *band, const struct stretch *s, const struct piece *p,
-                        int k, int shift, int number, size_t cell)
+static bool enter_piece(const struct occupation *o, struct band *band, struct band_draft *draft,
+                        const struct stretch *s, const struct piece *p, int k, int shift, int number, size_t cell)
 {
-  const int nx = o->size[0], row = k + s->to_band;
+  const int nx = o->size[0];
   const int reach_first = clamp(p->reach_first + shift, nx), reach_end = clamp(p->reach_end + shift, nx);
   if (reach_first >= reach_end) return false;
   const int low = p->first + shift < 0 ? 0 : p->first + shift, high = p->end + shift > nx ? nx : p->end + shift;
   const int cut = low - (p->first + shift);
   const size_t disc = s->disc;
-  /* written in place: a copy read in vectors would wait for its members, written one by one, to reach the cache */
-  band->runs[band->row_end[row]++] = (struct run){
-      .x = low < high ? low : reach_first,
-      .n = low < high ? high - low : 0,
+  const struct run run = {.x = low < high ? low : reach_first,
+                          .n = low < high ? high - low : 0,
+                          .disc = (uint32_t)disc,
+                          .rx = p->first + 0.5 - o->x[disc] + cut,
+                          .ry = o->row[disc] + k + 0.5 - o->y[disc]};
+  const struct candidate candidate = {
       .reach_first = reach_first,
       .reach_end = reach_end,
-      .disc = (uint32_t)disc,
-      .row = row,
-      .rx = p->first + 0.5 - o->x[disc] + cut,
-      .ry = o->row[disc] + k + 0.5 - o->y[disc],
       .cell = cell + (size_t)cut,
       .place = k >= 0 && k < o->rows[disc] ? 2 * (o->first_row[disc] + (size_t)k) + (size_t)number : no_run};
-  sort_last(band, row);
+  enter_run(band, draft, k + s->to_band, &run, &candidate);
   return true;
 }
 
 /* The runs of row k of the disc, whose cells begin at `cell`: at most two pieces. */
-static void enter_row(const struct occupation *o, struct band *band, const struct stretch *s,
+static void enter_row(const struct occupation *o, struct band *band, struct band_draft *draft, const struct stretch *s,
                       const struct area_extents *e, int k, size_t cell)
 {
   const int column = o->column[s->disc], at = k - s->reach_from;
@@ -338,39 +358,32 @@ static void enter_row(const struct occupation *o, struct band *band, const struc
   p.first = own ? column + e->first[at] : p.reach_first;
   p.end = own ? column + e->end[at] : p.reach_first;
   if (s->inside || !o->periodic[0]) {
-    enter_piece(o, band, s, &p, k, 0, 0, cell);
+    enter_piece(o, band, draft, s, &p, k, 0, 0, cell);
     return;
   }
   const int shifts[3] = {0, o->size[0], -o->size[0]};
-  for (int n = 0, count = 0; n < 3 && count < 2; n++) count += enter_piece(o, band, s, &p, k, shifts[n], count, cell);
+  for (int n = 0, count = 0; n < 3 && count < 2; n++)
+    count += enter_piece(o, band, draft, s, &p, k, shifts[n], count, cell);
 }
 
 /* enter_row for rows from .. end - 1 of a disc inside the box, where runs reach no further than their cells: nearly all. */
-static void enter_rows_inside(const struct occupation *o, struct band *band, const struct stretch *s,
-                              const struct area_extents *e, int from, int end, size_t cell)
+static void enter_rows_inside(const struct occupation *o, struct band *band, struct band_draft *draft,
+                              const struct stretch *s, const struct area_extents *e, int from, int end, size_t cell)
 {
   const double left = o->column[s->disc] + 0.5 - o->x[s->disc], low = o->row[s->disc] + 0.5 - o->y[s->disc];
   for (int k = from; k < end; k++) {
-    const int at = k - s->reach_from, row = k + s->to_band, n = e->end[at] - e->first[at];
-    const int first = o->column[s->disc] + e->first[at];
-    band->runs[band->row_end[row]++] = (struct run){.x = first,
-                                                    .n = n,
-                                                    .reach_first = first,
-                                                    .reach_end = first + n,
-                                                    .disc = (uint32_t)s->disc,
-                                                    .row = row,
-                                                    .rx = left + e->first[at],
-                                                    .ry = low + k,
-                                                    .cell = cell,
-                                                    .place = 2 * (o->first_row[s->disc] + (size_t)k)};
-    sort_last(band, row);
+    const int at = k - s->reach_from, n = e->end[at] - e->first[at], first = o->column[s->disc] + e->first[at];
+    const struct run run = {.x = first, .n = n, .disc = (uint32_t)s->disc, .rx = left + e->first[at], .ry = low + k};
+    const struct candidate candidate = {
+        .reach_first = first, .reach_end = first + n, .cell = cell, .place = 2 * (o->first_row[s->disc] + (size_t)k)};
+    enter_run(band, draft, k + s->to_band, &run, &candidate);
     cell += (size_t)n;
   }
 }
 
 /* The runs of a stretch, and the areas of their cells, which begin at `cells`; sets where they end. */
-static bool paint_stretch(struct occupation *o, struct band *band, const struct discs *discs, const struct stretch *s,
-                          size_t *cells, struct status *status)
+static bool paint_stretch(struct occupation *o, struct band *band, struct band_draft *draft, const struct discs *discs,
+                          const struct stretch *s, size_t *cells, struct status *status)
 {
   const size_t disc = s->disc;
   const double radius = discs->radius[disc], x = o->x[disc], y = o->y[disc];
@@ -379,26 +392,27 @@ static bool paint_stretch(struct occupation *o, struct band *band, const struct 
   o->area->extents(radius, x, y, o->row[disc] + s->reach_from, s->reach_end - s->reach_from, &e);
   size_t end = *cells;
   for (int k = own; k < own_end; k++) end += (size_t)(e.end[k - s->reach_from] - e.first[k - s->reach_from]);
-  if (!memory_grow(&band->eps, &band->eps_capacity, end + SLACK, sizeof *band->eps, "a band's cells", status))
+  if (!memory_grow(&draft->eps, &draft->eps_capacity, end + SLACK, sizeof *draft->eps, "a band's cells", status))
     return false;
   if (own < own_end)
     o->area->rows(radius, x, y, o->row[disc] + s->reach_from, own - s->reach_from, own_end - s->reach_from, &e,
-                  band->eps + *cells);
+                  draft->eps + *cells);
   size_t cell = *cells;
   *cells = end;
   if (s->inside && o->reach == 0) {
-    enter_rows_inside(o, band, s, &e, own, own_end, cell);
+    enter_rows_inside(o, band, draft, s, &e, own, own_end, cell);
     return true;
   }
   for (int k = s->from; k < s->end; k++) {
-    enter_row(o, band, s, &e, k, cell);
+    enter_row(o, band, draft, s, &e, k, cell);
     if (k >= own && k < own_end) cell += (size_t)(e.end[k - s->reach_from] - e.first[k - s->reach_from]);
   }
   return true;
 }
 
 /* Room for the runs of each row: as many as there may be. */
-static bool make_room(struct occupation *o, int index, const struct discs *discs, struct status *status)
+static bool make_room(struct occupation *o, int index, const struct discs *discs, struct band_draft *draft,
+                      struct status *status)
 {
   struct band *band = &o->bands[index];
   size_t room[BAND_ROWS] = {0}, total = 0;
@@ -411,15 +425,21 @@ static bool make_room(struct occupation *o, int index, const struct discs *discs
     band->row_start[k] = band->row_end[k] = total;
     total += room[k];
   }
-  return memory_grow(&band->runs, &band->run_capacity, total, sizeof *band->runs, "a band's runs", status) &&
+  return memory_grow(&draft->candidates, &draft->candidate_capacity, total, sizeof *draft->candidates, "a band's runs",
+                     status) &&
+         memory_grow(&band->runs, &band->run_capacity, total, sizeof *band->runs, "a band's runs", status) &&
          memory_grow(&band->sums, &band->sums_capacity, total, sizeof *band->sums, "a band's sums", status);
 }
 
 /* The shares of the band's cells, as if each had one owner. What a kernel writes past the end of a run is overwritten by
  * the next. */
-static bool lay_out_shares(struct occupation *o, struct band *band, size_t cells, struct status *status)
+static bool lay_out_shares(struct occupation *o, struct band *band, const struct band_draft *draft, size_t cells,
+                           struct status *status)
 {
-  size_t share = 0;
+  uint32_t share = 0;
+  if (cells > UINT32_MAX - SLACK)
+    return status_fail(status, DELBM_FAILED, "%zu covered cells in %d rows are more than a band can hold", cells,
+                       BAND_ROWS);
   if (!memory_grow(&band->share, &band->share_capacity, cells + SLACK, sizeof *band->share, "a band's cells", status))
     return false;
   for (int k = 0; k < BAND_ROWS; k++)
@@ -427,61 +447,65 @@ static bool lay_out_shares(struct occupation *o, struct band *band, size_t cells
       struct run *run = &band->runs[r];
       run->share = share;
       if (run->n == 0) continue;
-      o->place[run->place] = r;
-      o->area->weights(band->eps + run->cell, run->n, o->three_nu, band->share + share);
-      share += (size_t)run->n;
+      o->place[draft->candidates[r].place] = r;
+      o->area->weights(draft->eps + draft->candidates[r].cell, run->n, o->three_nu, band->share + share);
+      share += (uint32_t)run->n;
     }
   return true;
 }
 
-static bool paint_band(struct occupation *o, int index, const struct discs *discs, struct status *status)
+static bool paint_band(struct occupation *o, int index, const struct discs *discs, struct band_draft *draft,
+                       struct status *status)
 {
   struct band *band = &o->bands[index];
   size_t cells = 0;
   struct stretch s;
-  if (!make_room(o, index, discs, status)) return false;
+  if (!make_room(o, index, discs, draft, status)) return false;
   for (size_t d = o->band_start[index]; d < o->band_start[index + 1]; d++)
     for (int image = -o->periodic[1]; image <= o->periodic[1]; image++)
       if (stretch_of(o, discs, index, o->band_discs[d], image, &s) &&
-          !paint_stretch(o, band, discs, &s, &cells, status))
+          !paint_stretch(o, band, draft, discs, &s, &cells, status))
         return false;
-  return lay_out_shares(o, band, cells, status);
+  return lay_out_shares(o, band, draft, cells, status);
 }
+
+/* Two runs of a row that meet; runs before `open` end before them. */
+struct encounter {
+  const struct run *row;
+  const struct candidate *candidates; /* of the row's runs */
+  const double *eps;
+  size_t count, open, first, second;
+  int y; /* of the box */
+};
 
 static bool covers(const struct run *run, int x)
 {
   return x >= run->x && x < run->x + run->n;
 }
 
-static size_t cell_of(const struct run *run, int x)
+/* eps of cell x, which the row's run r covers. */
+static double fraction(const struct encounter *e, size_t r, int x)
 {
-  return run->cell + (size_t)(x - run->x);
+  return e->eps[e->candidates[r].cell + (size_t)(x - e->row[r].x)];
 }
 
-/* Shares a cell among its owners: runs[0], and some of those after it. */
-static void share_cell(struct occupation *o, struct band *band, const struct run *runs, size_t count, int x)
+/* Shares a cell among its owners: the first of the encounter, and some of those after it. */
+static void share_cell(struct occupation *o, struct band *band, const struct encounter *e, int x)
 {
   double total = 0;
-  size_t owners = 0, end = 0;
-  for (; end < count && runs[end].reach_first <= x; end++) {
-    if (!covers(&runs[end], x)) continue;
-    total += band->eps[cell_of(&runs[end], x)];
+  size_t owners = 0, end = e->first;
+  for (; end < e->count && e->candidates[end].reach_first <= x; end++) {
+    if (!covers(&e->row[end], x)) continue;
+    total += fraction(e, end, x);
     owners++;
   }
   if (total <= 0) return;
   const double weight = occupation_weight(fmin(1, total), o->three_nu) / total;
-  for (size_t r = 0; r < end; r++)
-    if (covers(&runs[r], x))
-      band->share[runs[r].share + (size_t)(x - runs[r].x)] = band->eps[cell_of(&runs[r], x)] * weight;
+  for (size_t r = e->first; r < end; r++)
+    if (covers(&e->row[r], x)) band->share[e->row[r].share + (size_t)(x - e->row[r].x)] = fraction(e, r, x) * weight;
   band->shared_cells++;
   band->shared_owners += owners;
 }
-
-/* Two runs of a row that meet; runs before `open` end before them. */
-struct encounter {
-  const struct run *row;
-  size_t count, open, first, second;
-};
 
 /* True if a run before the second, other than the first, covers the cell: it is then shared on their account. */
 static bool shared_earlier(const struct encounter *e, int x)
@@ -491,13 +515,12 @@ static bool shared_earlier(const struct encounter *e, int x)
   return false;
 }
 
-/* What (23) sums over the cells that two runs share, low .. high - 1. */
-static double cells_area(const struct occupation *o, const struct band *band, const struct run *l, const struct run *r,
-                         int low, int high)
+/* What (23) sums over the cells low .. high - 1, which both runs cover. */
+static double cells_area(const struct occupation *o, const struct encounter *e, int low, int high)
 {
   double area = 0;
   for (int x = low; x < high; x++) {
-    const double eps_l = band->eps[cell_of(l, x)], eps_r = band->eps[cell_of(r, x)];
+    const double eps_l = fraction(e, e->first, x), eps_r = fraction(e, e->second, x);
     if (eps_l > 0 && eps_r > 0) area += fmax(0, eps_l + eps_r - o->minimum);
   }
   return area;
@@ -545,28 +568,50 @@ static bool meet(struct occupation *o, int index, const struct discs *discs, con
   const int low = l->x > r->x ? l->x : r->x;
   const int high = l->x + l->n < r->x + r->n ? l->x + l->n : r->x + r->n;
   for (int x = low; x < high; x++)
-    if (!shared_earlier(e, x)) share_cell(o, band, l, e->count - e->first, x);
+    if (!shared_earlier(e, x)) share_cell(o, band, e, x);
   if (pair.a == pair.b || o->search == PAIRS_NONE) return true;
-  if (o->search == PAIRS_WITH_AREA) pair.cells_area = cells_area(o, band, l, r, low, high);
-  const bool noted = o->search == PAIRS_WITH_AREA || noted_in_row(o, discs, pair.a, pair.b, index * BAND_ROWS + l->row);
+  if (o->search == PAIRS_WITH_AREA) pair.cells_area = cells_area(o, e, low, high);
+  const bool noted = o->search == PAIRS_WITH_AREA || noted_in_row(o, discs, pair.a, pair.b, e->y);
   return !noted || note_pair(o, index, &pair, status);
 }
 
-static bool find_shared(struct occupation *o, int index, const struct discs *discs, struct status *status)
+static bool find_shared(struct occupation *o, int index, const struct discs *discs, const struct band_draft *draft,
+                        struct status *status)
 {
   struct band *band = &o->bands[index];
   o->batches[index].count = band->shared_cells = band->shared_owners = 0;
   for (int k = 0; k < BAND_ROWS; k++) {
-    const struct run *row = band->runs + band->row_start[k];
-    struct encounter e = {.row = row, .count = band->row_end[k] - band->row_start[k]};
+    const struct candidate *c = draft->candidates + band->row_start[k];
+    struct encounter e = {.row = band->runs + band->row_start[k],
+                          .candidates = c,
+                          .eps = draft->eps,
+                          .count = band->row_end[k] - band->row_start[k],
+                          .y = index * BAND_ROWS + k};
     for (e.first = 0; e.first + 1 < e.count; e.first++) {
-      const struct run *first = &row[e.first];
-      while (e.open < e.first && row[e.open].reach_end <= first->reach_first) e.open++;
-      for (e.second = e.first + 1; e.second < e.count && row[e.second].reach_first < first->reach_end; e.second++)
+      while (e.open < e.first && c[e.open].reach_end <= c[e.first].reach_first) e.open++;
+      for (e.second = e.first + 1; e.second < e.count && c[e.second].reach_first < c[e.first].reach_end; e.second++)
         if (!meet(o, index, discs, &e, status)) return false;
     }
   }
   return true;
+}
+
+/* What follows from where the discs are, before bands are painted. */
+static bool prepare_bands(struct occupation *o, struct status *status)
+{
+  const size_t threads = (size_t)omp_get_num_threads();
+  size_t capacity = o->draft_count;
+  if (!mark_stale(o)) return true;
+  if (!memory_grow(&o->drafts, &capacity, threads, sizeof *o->drafts, "the bands", status)) return false;
+  if (threads > o->draft_count) {
+    memset(o->drafts + o->draft_count, 0, (threads - o->draft_count) * sizeof *o->drafts);
+    o->draft_count = threads;
+  }
+  if (o->painted)
+    sort_by_x(o);
+  else if (!sort_from_scratch(o, status))
+    return false;
+  return list_bands(o, status);
 }
 
 void stage_occupation(struct occupation *o, const struct discs *discs, struct team *team)
@@ -576,20 +621,16 @@ void stage_occupation(struct occupation *o, const struct discs *discs, struct te
   for (size_t i = 0; i < o->discs; i++) settle(o, discs, i);
 #pragma omp single
   {
-    if (mark_stale(o)) {
-      if (o->painted)
-        sort_by_x(o);
-      else if (!sort_from_scratch(o, &status))
-        team_fail(team, &status);
-      if (!team->failed && !list_bands(o, &status)) team_fail(team, &status);
-    }
+    if (!prepare_bands(o, &status)) team_fail(team, &status);
     team->stop = team->failed;
   }
   if (team->stop) return;
 #pragma omp for schedule(static)
-  for (int k = 0; k < o->band_count; k++)
-    if (o->stale[k] && (!paint_band(o, k, discs, &status) || !find_shared(o, k, discs, &status)))
+  for (int k = 0; k < o->band_count; k++) {
+    struct band_draft *draft = &o->drafts[omp_get_thread_num()];
+    if (o->stale[k] && (!paint_band(o, k, discs, draft, &status) || !find_shared(o, k, discs, draft, &status)))
       team_fail(team, &status);
+  }
 #pragma omp single
   {
     o->painted = true;

@@ -1,7 +1,8 @@
 /* Occupation: which cells each disc covers, and how much of them.
  *
  * A disc is convex, so it covers one run of cells in each row. Nothing is as large as the box: a band of rows holds the
- * runs of its own rows, and for their cells the occupation fractions eps and the shares of B (19). The step then needs,
+ * runs of its own rows, and the shares of B (19) of their cells; the occupation fractions eps, from which these follow,
+ * stay in cache while a band is painted. The step then needs,
  * per row, the runs of all discs from left to right:
  *
  *   1. places    per disc, in parallel: the rows it covers, and whether it has moved.
@@ -54,14 +55,15 @@ struct band {
   struct run *runs;
   size_t run_capacity;
   size_t row_start[BAND_ROWS], row_end[BAND_ROWS]; /* runs of the band's row k: row_start[k] .. row_end[k] - 1 */
-  double *eps;                                     /* of the cells of all runs, disc by disc */
-  double *share;                                   /* w_p B of the same cells, row by row as the sweep meets them */
-  size_t eps_capacity, share_capacity;
+  double *share;                                   /* w_p B of their cells, row by row as the sweep meets them */
+  size_t share_capacity;
   struct moment_sums *sums; /* of each run: taken by the sweep, added up by the exchange */
   size_t sums_capacity;
   size_t shared_cells;  /* cells of the band with more than one owner */
   size_t shared_owners; /* and their owners, all told */
 };
+
+struct band_draft;
 
 struct occupation {
   int size[2];
@@ -90,6 +92,8 @@ struct occupation {
   uint8_t *stale; /* of each band: to be painted anew */
   struct band *bands;
   struct pair_batch *batches; /* of each band */
+  struct band_draft *drafts;  /* of each thread: what is needed of a band only while it is painted */
+  size_t draft_count;
   int band_count;
 };
 
@@ -137,6 +141,12 @@ static inline const struct moment_sums *occupation_sums(const struct occupation 
 static inline double occupation_weight(double eps, double three_nu)
 {
   return eps * three_nu / ((1 - eps) + three_nu);
+}
+
+/* The occupation fraction of a cell with weight B, that of all its owners' shares together. */
+static inline double occupation_fraction(double weight, double three_nu)
+{
+  return weight * (1 + three_nu) / (three_nu + weight);
 }
 
 #endif
