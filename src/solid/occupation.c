@@ -538,15 +538,17 @@ static double nearest(const struct occupation *o, int axis, double d)
  * they meet in this row. A point outside of the box, where no rows are, decides nothing. */
 static bool noted_in_row(const struct occupation *o, const struct discs *discs, uint32_t a, uint32_t b, int y)
 {
-  const double dx = nearest(o, 0, o->x[b] - o->x[a]), dy = nearest(o, 1, o->y[b] - o->y[a]);
-  const double ra = discs->radius[a], rb = discs->radius[b], near = ra + rb + o->reach, d2 = dx * dx + dy * dy;
-  if (d2 >= near * near) return false;
-  const double inside = ra < rb ? 0 : 1, difference = (ra - rb) * (ra + rb);
-  const double along = d2 > (ra - rb) * (ra - rb) ? 0.5 + 0.5 * difference / d2 : inside;
-  const double at_x = o->x[a] + along * dx, at_y = o->y[a] + along * dy;
-  if (!o->periodic[0] && !(at_x > 0 && at_x < o->size[0])) return true;
-  if (!o->periodic[1] && !(at_y > 0 && at_y < o->size[1])) return true;
-  return wrap((int)floor(at_y), o->size[1]) == y;
+  const double ra = discs->radius[a], rb = discs->radius[b], near = ra + rb + o->reach, difference = ra - rb;
+  const double dx = nearest(o, 0, o->x[b] - o->x[a]), dy = nearest(o, 1, o->y[b] - o->y[a]), d2 = dx * dx + dy * dy;
+  double along = 0.5; /* of the way from a to b */
+  if (difference != 0) along = d2 > difference * difference ? 0.5 + 0.5 * difference * (ra + rb) / d2 : ra > rb;
+  const double at_y = o->y[a] + along * dy;
+  const bool above_or_below = !o->periodic[1] && !(at_y > 0 && at_y < o->size[1]);
+  if (!above_or_below && wrap((int)floor(at_y), o->size[1]) != y) {
+    const double at_x = o->x[a] + along * dx;
+    if (o->periodic[0] || (at_x > 0 && at_x < o->size[0])) return false;
+  }
+  return d2 < near * near;
 }
 
 static bool note_pair(struct occupation *o, int index, const struct near_pair *pair, struct status *status)
