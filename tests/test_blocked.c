@@ -46,7 +46,7 @@ static void populations_after(const struct scene *scene, const struct blocking *
 #pragma omp parallel num_threads(threads)
     {
       if (blocking->depth == 0)
-        stage_sweep(&flow, false, &(struct sweep_discs){0});
+        stage_sweep(&flow, &(struct rows){0, NY}, false, &(struct sweep_discs){0});
       else
         stage_sweep_blocked(&flow, blocking, block);
     }
@@ -119,6 +119,53 @@ Test(single, precision_stays_within_1e_4_of_double_in_a_cavity)
   cr_expect_lt(largest, 1e-4, "differs by %g of the lid's speed", largest);
   free(in_double);
   free(in_single);
+}
+
+/* Discs near each other, one of them fast, one fixed, in a tall box. */
+static struct scene few_discs(bool periodic)
+{
+  struct scene scene = scene_box(40, 210, 0.02, periodic ? SIDES_PERIODIC : SIDES_CLOSED);
+  scene.particles.gravity[1] = -0.01;
+  const double low = periodic ? 2 : 90; /* across the periodic side */
+  scene_add_disc(&scene, 4.3, 1.5, 12.1, low);
+  scene_add_disc(&scene, 2, 3, 20.4, low + 9)->velocity[1] = 0.2;
+  scene_add_disc(&scene, 6, 1, 30, low + 20)->motion = DISC_FIXED;
+  if (!periodic) scene.domain.side[SIDE_TOP].velocity[0] = 0.05;
+  return scene;
+}
+
+/* Velocity along x and the discs' places after 200 steps. */
+static void run_few_discs(bool periodic, int depth, int threads, double *ux, double places[6])
+{
+  struct scene scene = few_discs(periodic);
+  struct simulation *simulation;
+  struct status status;
+  scene.run.plan.depth = depth;
+  omp_set_num_threads(threads);
+  cr_assert(simulation_create(&simulation, &scene, &status), "%s", status.message);
+  cr_assert(simulation_advance(simulation, 203, &status), "%s", status.message);
+  simulation_fields(simulation, NULL, ux, NULL);
+  const struct discs *discs = simulation_discs(simulation);
+  for (int i = 0; i < 3; i++) places[2 * i] = discs->x[i], places[2 * i + 1] = discs->y[i];
+  simulation_destroy(simulation);
+  scene_clear(&scene);
+}
+
+Test(blocked, rows_that_no_disc_can_reach_go_ahead_and_give_the_same_bits)
+{
+  enum { CELLS = 40 * 210 };
+  static const int depths[] = {0, 2, 7, 20, 1000}, threads[] = {1, 2, 3};
+  static double expected[CELLS], obtained[CELLS];
+  double places[2][6];
+  for (int periodic = 0; periodic < 2; periodic++) {
+    run_few_discs(periodic, 1, 1, expected, places[0]);
+    for (size_t d = 0; d < sizeof depths / sizeof depths[0]; d++)
+      for (size_t t = 0; t < sizeof threads / sizeof threads[0]; t++) {
+        run_few_discs(periodic, depths[d], threads[t], obtained, places[1]);
+        cr_expect(!memcmp(expected, obtained, sizeof expected) && !memcmp(places[0], places[1], sizeof places[0]),
+                  "periodic %d, depth %d, threads %d", periodic, depths[d], threads[t]);
+      }
+  }
 }
 
 /* The paper's single disc, before its wake turns unsteady. */

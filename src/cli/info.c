@@ -139,9 +139,11 @@ static void print_contacts(const struct scene *scene, const struct plan *plan)
 static void print_plan(const struct scene *scene)
 {
   if (!blocked_possible(scene))
-    printf("blocking     off: %s\n", scene->particles.count > 0 ? "there are discs"
-                                     : scene->fluid.zero_flux   ? "zero_flux sums over the box each step"
-                                                                : "outlets read beyond their own rows");
+    printf("blocking     off: %s\n",
+           scene->fluid.zero_flux ? "zero_flux sums over the box each step" : "outlets read beyond their own rows");
+  else if (scene->particles.count > 0)
+    printf("blocking     in time, %d steps deep, of rows that no disc can reach\n",
+           scene->run.plan.depth > 0 ? scene->run.plan.depth : BLOCKED_AHEAD);
   else if (scene->run.plan.depth == 0)
     printf("blocking     in time, depth by trial in the first steps (run.json has it); fix it by --plan\n");
   else

@@ -6,7 +6,7 @@
 
 bool blocked_possible(const struct scene *scene)
 {
-  return scene->particles.count == 0 && !scene->fluid.zero_flux && !boundary_fill_first(scene->domain.side);
+  return !scene->fluid.zero_flux && !boundary_fill_first(scene->domain.side);
 }
 
 int blocked_deepest(int ny, int threads)
@@ -20,22 +20,23 @@ struct slab {
   bool open_below, open_above;
 };
 
-static struct slab slab_of(const struct flow *f, int thread, int threads)
+/* Slab `number` of `count` into which another is cut. */
+static struct slab slab_of(const struct slab *whole, int number, int count)
 {
-  const int64_t ny = f->populations.ny;
-  const bool ring = f->populations.periodic_y;
-  return (struct slab){.first = (int)(ny * thread / threads),
-                       .end = (int)(ny * (thread + 1) / threads),
-                       .open_below = ring || thread > 0,
-                       .open_above = ring || thread + 1 < threads};
+  const int64_t rows = whole->end - whole->first;
+  return (struct slab){.first = whole->first + (int)(rows * number / count),
+                       .end = whole->first + (int)(rows * (number + 1) / count),
+                       .open_below = whole->open_below || number > 0,
+                       .open_above = whole->open_above || number + 1 < count};
 }
 
-/* Cells x0 .. x1 - 1 of row y, one step of the given parity. */
+/* Cells x0 .. x1 - 1 of row y, which may lie beyond a periodic side, one step of the given parity. */
 static void update(const struct flow *f, int parity, int y, int x0, int x1)
 {
   if (x0 >= x1) return;
   struct populations p = f->populations; /* the parity of a block's steps differs from row to row */
   p.parity = parity;
+  y = y < 0 ? y + p.ny : y >= p.ny ? y - p.ny : y;
   void *a[Q];
   double momentum[2];
   if (parity) boundary_before(&p, f->scene->domain.side, y, x0, x1);
@@ -77,21 +78,96 @@ static void sweep_slab(const struct flow *f, const struct slab *slab, int width,
 /* What slabs left out on both sides of the border below row `border`. */
 static void sweep_border(const struct flow *f, int border, int steps)
 {
-  const int ny = f->populations.ny, nx = f->populations.nx;
   for (int s = 1; s < steps; s++)
-    for (int y = border - s; y < border + s; y++) update(f, f->populations.parity ^ (s & 1), (y + ny) % ny, 0, nx);
+    for (int y = border - s; y < border + s; y++) update(f, f->populations.parity ^ (s & 1), y, 0, f->populations.nx);
 }
 
 void stage_sweep_blocked(struct flow *f, const struct blocking *blocking, int steps)
 {
-  const int threads = omp_get_num_threads(), thread = omp_get_thread_num();
-  const struct slab slab = slab_of(f, thread, threads);
-  const int nx = f->populations.nx;
+  const int nx = f->populations.nx, ny = f->populations.ny;
   const int width = blocking->width > 0 && blocking->width < nx ? blocking->width : nx;
+  const bool ring = f->populations.periodic_y;
+  const struct slab box = {.end = ny, .open_below = ring, .open_above = ring};
+  const struct slab slab = slab_of(&box, omp_get_thread_num(), omp_get_num_threads());
   sweep_slab(f, &slab, width, steps);
 #pragma omp barrier
   if (slab.open_below) sweep_border(f, slab.first, steps);
 #pragma omp barrier
 #pragma omp single
   f->populations.parity ^= steps & 1;
+}
+
+/* Rows that may go ahead by `steps` must leave one slab twice as high. */
+static bool is_high_enough(int rows, int steps)
+{
+  return rows >= 2 * steps;
+}
+
+/* The rows of all discs and `margin` more on each side. Across a periodic side they are counted on from the first disc,
+ * which is sensible as long as they span less than half of the box. */
+static struct rows rows_of_discs(const struct scene *scene, const struct occupation *o, int margin)
+{
+  const int ny = scene->domain.size[1], half = ny / 2;
+  struct rows rows = {o->row[0], o->row[0] + o->rows[0]};
+  for (size_t i = 1; i < o->discs; i++) {
+    int first = o->row[i];
+    if (scene_is_periodic(scene, 1)) first += first - o->row[0] > half ? -ny : first - o->row[0] < -half ? ny : 0;
+    if (first < rows.first) rows.first = first;
+    if (first + o->rows[i] > rows.end) rows.end = first + o->rows[i];
+  }
+  return (struct rows){rows.first - margin, rows.end + margin};
+}
+
+bool blocked_near(const struct scene *scene, const struct occupation *now, int steps, struct near_rows *near)
+{
+  const int ny = scene->domain.size[1];
+  *near = (struct near_rows){.rows = rows_of_discs(scene, now, 3), .grow_below = true, .grow_above = true};
+  if (scene_is_periodic(scene, 1)) return near->rows.end - near->rows.first + 4 * steps <= ny / 2;
+  near->grow_below = is_high_enough(near->rows.first, steps);
+  near->grow_above = is_high_enough(ny - near->rows.end, steps);
+  if (!near->grow_below) near->rows.first = 0;
+  if (!near->grow_above) near->rows.end = ny;
+  return near->grow_below || near->grow_above;
+}
+
+struct rows blocked_near_at(const struct near_rows *near, int s)
+{
+  return (struct rows){near->rows.first - (near->grow_below ? s : 0), near->rows.end + (near->grow_above ? s : 0)};
+}
+
+bool blocked_discs_within(const struct scene *scene, const struct occupation *o, const struct rows *rows)
+{
+  const int ny = scene->domain.size[1];
+  const struct rows discs = rows_of_discs(scene, o, 1);
+  int shift = 0; /* both may be counted from either side of a periodic one */
+  if (scene_is_periodic(scene, 1)) shift = discs.first < rows->first ? ny : discs.end > rows->end ? -ny : 0;
+  const bool below = discs.first + shift >= rows->first || (rows->first == 0 && !scene_is_periodic(scene, 1));
+  const bool above = discs.end + shift <= rows->end || (rows->end == ny && !scene_is_periodic(scene, 1));
+  return below && above;
+}
+
+/* The slabs of one interval of rows; whoever has one. */
+static void sweep_interval(struct flow *f, const struct slab *interval, int steps)
+{
+  const int threads = omp_get_num_threads(), thread = omp_get_thread_num();
+  const int most = (interval->end - interval->first) / (2 * steps), count = most < threads ? most : threads;
+  struct slab slab = {0};
+  if (thread < count) {
+    slab = slab_of(interval, thread, count);
+    sweep_slab(f, &slab, f->populations.nx, steps);
+  }
+#pragma omp barrier
+  if (thread < count && thread > 0) sweep_border(f, slab.first, steps);
+#pragma omp barrier
+}
+
+void stage_sweep_ahead(struct flow *f, const struct near_rows *near, int steps)
+{
+  const int ny = f->populations.ny, first = near->rows.first, end = near->rows.end;
+  if (f->populations.periodic_y) {
+    sweep_interval(f, &(struct slab){end, first + ny, .open_below = true, .open_above = true}, steps);
+    return;
+  }
+  if (near->grow_below) sweep_interval(f, &(struct slab){0, first, .open_above = true}, steps);
+  if (near->grow_above) sweep_interval(f, &(struct slab){end, ny, .open_below = true}, steps);
 }

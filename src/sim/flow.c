@@ -130,30 +130,40 @@ void stage_first_sums(struct flow *f, struct occupation *o)
 {
 #pragma omp for schedule(static)
   for (int y = 0; y < f->populations.ny; y++) take_sums(f, &f->populations, o, y);
+#pragma omp single
+  f->ghosts_filled = true;
 }
 
-void stage_sweep(struct flow *f, bool ghosts_filled, const struct sweep_discs *discs)
+static int row_in_box(const struct populations *p, int y)
+{
+  return y < 0 ? y + p->ny : y >= p->ny ? y - p->ny : y;
+}
+
+void stage_sweep(struct flow *f, const struct rows *rows, bool ghosts_filled, const struct sweep_discs *discs)
 {
   struct populations *p = &f->populations;
   struct populations after = *p; /* the same populations, as the next step will read them */
   const struct side *side = f->scene->domain.side;
-  const int64_t thread = omp_get_thread_num(), threads = omp_get_num_threads();
-  const int first = (int)(p->ny * thread / threads), end = (int)(p->ny * (thread + 1) / threads);
+  const int64_t thread = omp_get_thread_num(), threads = omp_get_num_threads(), count = rows->end - rows->first;
+  const int first = rows->first + (int)(count * thread / threads);
+  const int end = rows->first + (int)(count * (thread + 1) / threads);
   after.parity ^= 1;
-  for (int y = first; y < end; y++) {
+  for (int k = first; k < end; k++) {
+    const int y = row_in_box(p, k);
     if (p->parity && !ghosts_filled) boundary_before_row(p, side, y);
     sweep_row_at(f, y, discs);
     if (p->parity) boundary_after_row(p, side, y);
-    if (discs->next && y > first + 1) take_sums(f, &after, discs->next, y - 1);
+    if (discs->next && k > first + 1) take_sums(f, &after, discs->next, row_in_box(p, k - 1));
   }
 #pragma omp barrier
   /* the ends of a thread's rows wait for their neighbours, which are another thread's */
-  if (discs->next && first < end) take_sums(f, &after, discs->next, first);
-  if (discs->next && first < end - 1) take_sums(f, &after, discs->next, end - 1);
+  if (discs->next && first < end) take_sums(f, &after, discs->next, row_in_box(p, first));
+  if (discs->next && first < end - 1) take_sums(f, &after, discs->next, row_in_box(p, end - 1));
 #pragma omp barrier
 #pragma omp single
   {
     if (f->scene->fluid.zero_flux) cancel_flux(f);
+    f->ghosts_filled = discs->next && count == p->ny;
     p->parity ^= 1;
   }
 }

@@ -16,6 +16,7 @@ struct flow {
   double (*row_momentum)[2]; /* after the sweep, of each row; with a force only */
   struct cover *covers;      /* of each thread */
   int threads;
+  bool ghosts_filled; /* of all rows, by the last sweep */
 };
 
 bool flow_create(struct flow *flow, const struct scene *scene, const struct plan *plan, struct status *status);
@@ -43,9 +44,15 @@ struct sweep_discs {
  * stage_boundary fills the ghosts of all rows before a sweep of parity 1, where boundary_fill_first says so. */
 void stage_boundary(struct flow *flow);
 
-/* The sweep. With discs each row's moments are taken for the next exchange once the row and its neighbours are done,
- * which also fills the row's ghosts if the next step needs them. Ends with the next step's parity and uniform force. */
-void stage_sweep(struct flow *flow, bool ghosts_filled, const struct sweep_discs *discs);
+/* Rows first .. end - 1; those beyond a periodic side are counted on. */
+struct rows {
+  int first, end;
+};
+
+/* The sweep of the given rows. With discs each row's moments are taken for the next exchange once the row and its
+ * neighbours are done, which also fills the row's ghosts if the next step needs them. Ends with the next step's parity and
+ * uniform force. */
+void stage_sweep(struct flow *flow, const struct rows *rows, bool ghosts_filled, const struct sweep_discs *discs);
 
 /* The sums of the first exchange, which no sweep precedes. */
 void stage_first_sums(struct flow *flow, struct occupation *occupation);

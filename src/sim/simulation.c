@@ -115,10 +115,25 @@ static void charge(struct simulation *s, enum stage stage, double *since)
   }
 }
 
-/* One step, by all threads of the parallel region. The exchange precedes the contacts so that these, and their
+/* Whether all discs are where the coming sweep of these rows sees them; nothing to ask if these are all. */
+static bool discs_stay_within(struct simulation *s, const struct occupation *next, const struct rows *rows)
+{
+  if (rows->end - rows->first == s->scene->domain.size[1]) return true;
+#pragma omp single
+  if (!blocked_discs_within(s->scene, next, rows)) {
+    struct status status;
+    status_fail(&status, DELBM_FAILED, "diverged at step %lld: a disc moved by more than a cell in one step",
+                (long long)s->step);
+    team_fail(&s->team, &status);
+    s->team.stop = true;
+  }
+  return !s->team.stop;
+}
+
+/* One step of these rows, by all threads of the parallel region. The exchange precedes the contacts so that these, and their
  * sub-steps, act through the same response as the fluid does; and discs are painted where they have just moved before
  * the sweep, so that the sweep can take the sums of the next exchange. */
-static void step(struct simulation *s, double *since)
+static void step(struct simulation *s, const struct rows *rows, double *since)
 {
   struct sweep_discs discs = {0};
   if (s->plan.exchange) {
@@ -135,7 +150,7 @@ static void step(struct simulation *s, double *since)
     if (s->team.stop) return;
     if (moving) stage_occupation(next, &s->discs, &s->team);
     charge(s, STAGE_OCCUPATION, since);
-    if (s->team.stop) return;
+    if (s->team.stop || !discs_stay_within(s, next, rows)) return;
     discs = (struct sweep_discs){.now = now, .exchange = &s->exchange, .next = next};
   }
   const bool fill_first = s->flow.populations.parity && !s->plan.exchange && boundary_fill_first(s->scene->domain.side);
@@ -143,7 +158,7 @@ static void step(struct simulation *s, double *since)
     stage_boundary(&s->flow);
     charge(s, STAGE_BOUNDARY, since);
   }
-  stage_sweep(&s->flow, fill_first || s->plan.exchange, &discs);
+  stage_sweep(&s->flow, rows, fill_first || s->flow.ghosts_filled, &discs);
   charge(s, STAGE_SWEEP, since);
 }
 
@@ -167,25 +182,70 @@ static void run_blocks(struct simulation *s, int64_t steps)
   }
 }
 
-/* Steps up to the next look for divergence, in one parallel region. */
-static void run_steps(struct simulation *s, int64_t steps)
+/* What follows a step of all or, in a block, of the near rows. */
+static void count_step(struct simulation *s)
 {
-  if (!s->tuning.settled || s->tuning.best.depth > 1) {
-    run_blocks(s, steps);
-    return;
+#pragma omp single
+  if (!s->team.stop) {
+    s->step++;
+    if (s->plan.occupation == OCCUPATION_EVERY_STEP) s->present ^= 1;
   }
+}
+
+/* Steps of all rows, in one parallel region. */
+static void run_single_steps(struct simulation *s, int64_t steps)
+{
+  const struct rows all = {0, s->scene->domain.size[1]};
 #pragma omp parallel num_threads(s->threads)
   {
     double since = clock_now();
     for (int64_t k = 0; k < steps && !s->team.stop; k++) {
-      step(s, &since);
-#pragma omp single
-      if (!s->team.stop) {
-        s->step++;
-        if (s->plan.occupation == OCCUPATION_EVERY_STEP) s->present ^= 1;
-      }
+      step(s, &all, &since);
+      count_step(s);
     }
   }
+}
+
+/* A block in which the rows that no disc can reach go ahead. */
+static void run_near_block(struct simulation *s, const struct near_rows *near, int steps)
+{
+#pragma omp parallel num_threads(s->threads)
+  {
+    double since = clock_now();
+    stage_sweep_ahead(&s->flow, near, steps);
+    charge(s, STAGE_SWEEP, &since);
+    for (int k = 0; k < steps && !s->team.stop; k++) {
+      const struct rows rows = blocked_near_at(near, k);
+      step(s, &rows, &since);
+      count_step(s);
+    }
+  }
+}
+
+/* Steps of a scene with discs that can be blocked in time, as long as enough rows are out of their reach. */
+static void run_near_blocks(struct simulation *s, int64_t steps)
+{
+  const int64_t end = s->step + steps;
+  while (s->step < end && !s->team.stop) {
+    const int64_t left = end - s->step, depth = s->tuning.best.depth, length = depth < left ? depth : left;
+    struct near_rows near;
+    if (length > 1 && blocked_near(s->scene, present(s), (int)length, &near))
+      run_near_block(s, &near, (int)length);
+    else
+      run_single_steps(s, length);
+  }
+}
+
+/* Steps up to the next look for divergence. */
+static void run_steps(struct simulation *s, int64_t steps)
+{
+  const bool blocked = !s->tuning.settled || s->tuning.best.depth > 1;
+  if (!blocked)
+    run_single_steps(s, steps);
+  else if (s->plan.exchange)
+    run_near_blocks(s, steps);
+  else
+    run_blocks(s, steps);
 }
 
 bool simulation_check(struct simulation *s, struct status *status)

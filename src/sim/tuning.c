@@ -23,6 +23,10 @@ void tuning_start(struct tuning *t, const struct scene *scene, int threads)
 {
   *t = (struct tuning){.best = {.depth = 1}, .settled = true, .best_time = INFINITY};
   if (!blocked_possible(scene)) return;
+  if (scene->particles.count > 0) { /* where and how deep depends on where the discs are */
+    t->best.depth = scene->run.plan.depth > 0 ? scene->run.plan.depth : BLOCKED_AHEAD;
+    return;
+  }
   t->widest = scene->domain.size[0];
   t->deepest = blocked_deepest(scene->domain.size[1], threads);
   if (scene->run.plan.depth == 0) {
