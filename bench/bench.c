@@ -6,6 +6,7 @@ const struct bench *bench_at(size_t index)
 {
   static const struct bench all[] = {
       {"sweep", "how fast is the fluid sweep, against a plain read-modify-write of its memory?", bench_sweep},
+      {"run", "what does a run of fluid alone cost beyond the bare sweep?", bench_run_alone},
       {"step", "what does a step with discs cost, stage by stage, against one without?", bench_step},
       {"occupation", "what do the areas of covered cells cost, and the stage that lays them out?", bench_occupation},
       {"contact", "what does finding contacts by the grid cost, against linked cells?", bench_contact},
