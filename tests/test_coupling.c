@@ -314,3 +314,39 @@ Test(stability, fluid_too_fast_is_found_within_the_interval_of_looks)
   simulation_destroy(simulation);
   scene_clear(&scene);
 }
+
+/* Discs that settle in a regular square array, one in a periodic cell, in water without net flux: their net weight is the
+ * drag K mu U of the array, K = 51.527 at solid fraction 0.2 (Sangani & Acrivos 1982). */
+Test(exchange, a_regular_array_settles_at_the_speed_that_its_drag_allows)
+{
+  static const struct {
+    enum coupling_form form;
+    bool magic;
+    double percent;
+  } choices[] = {{FORM_UNIFIED, false, 8}, {FORM_OWEN, false, 3}, {FORM_OWEN, true, 4}};
+  const double radius = 20 * sqrt(0.2 / M_PI), weight = 0.01 * 0.2 * 400 * 0.005, viscosity = 0.05;
+  for (size_t k = 0; k < sizeof choices / sizeof choices[0]; k++) {
+    struct scene scene = scene_box(20, 20, viscosity, SIDES_PERIODIC);
+    struct simulation *simulation;
+    struct status status;
+    scene.coupling.form = choices[k].form;
+    if (choices[k].magic) scene_use_magic(&scene);
+    scene.particles.gravity[1] = -0.005;
+    scene.fluid.force[1] = weight / 400;
+    scene_add_disc(&scene, radius, 1.01, 10.3, 10.1);
+    cr_assert(simulation_create(&simulation, &scene, &status), "%s", status.message);
+    cr_assert(simulation_advance(simulation, 6000, &status), "%s", status.message);
+    double before = simulation_discs(simulation)->y[0], fallen = 0; /* over cells, whose grid it feels */
+    for (int n = 0; n < 6000; n += 100) {
+      cr_assert(simulation_advance(simulation, 100, &status), "%s", status.message);
+      const double y = simulation_discs(simulation)->y[0];
+      fallen += remainder(before - y, 20);
+      before = y;
+    }
+    const double speed = fallen / 6000, expected = weight / (51.527 * viscosity);
+    cr_expect(fabs(speed / expected - 1) < choices[k].percent / 100, "choice %zu: %g, %+.2f %% off %g", k, speed,
+              100 * (speed / expected - 1), expected);
+    simulation_destroy(simulation);
+    scene_clear(&scene);
+  }
+}
