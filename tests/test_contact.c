@@ -2,14 +2,15 @@
 #include "contact/law.h"
 #include "contact/lens.h"
 #include "contact/overlap.h"
+#include "drive.h"
 #include "scenes.h"
-#include "sim/simulation.h"
 
 #include <criterion/criterion.h>
 #include <gsl/gsl_rng.h>
 #include <math.h>
 #include <omp.h>
 #include <stdlib.h>
+#include <string.h>
 
 static gsl_rng *random_from(unsigned long seed)
 {
@@ -435,4 +436,31 @@ Test(impact, with_damping_kinetic_energy_never_grows)
     check_impacts(oblique, 0.2, dampings[k]);
     check_impacts(on_bottom_wall, 0.1, dampings[k]);
   }
+}
+
+/* The message with which the first step fails. */
+static void expect_refusal(const struct scene *scene, int threads)
+{
+  struct status status;
+  struct simulation *simulation = start(scene);
+  omp_set_num_threads(threads);
+  cr_expect_not(simulation_advance(simulation, 1, &status));
+  cr_expect(strstr(status.message, "sub-steps a step, more than 1000000: use a smaller contact.stiffness"), "%s",
+            status.message);
+  simulation_destroy(simulation);
+}
+
+Test(contacts, too_stiff_to_be_followed_are_refused_by_any_number_of_threads)
+{
+  struct scene pair = scene_box(64, 48, 0.05, SIDES_CLOSED);
+  scene_add_disc(&pair, 8, 1.2, 30, 24);
+  scene_add_disc(&pair, 8, 1.2, 45, 24);
+  pair.contact.stiffness = 1e30;
+  expect_refusal(&pair, 1);
+  scene_clear(&pair);
+  struct scene crowd = scene_crowd(256, 256, 4, 8, 1);
+  crowd.contact.stiffness = 1e30;
+  expect_refusal(&crowd, 1);
+  expect_refusal(&crowd, 4);
+  scene_clear(&crowd);
 }

@@ -126,7 +126,7 @@ static bool search_row(struct linked_cell *l, const struct discs *d, int y, stru
   return true;
 }
 
-void linked_cell_find(struct linked_cell *l, const struct discs *d, struct pair_list *list, struct team *team)
+bool linked_cell_find(struct linked_cell *l, const struct discs *d, struct pair_list *list, struct team *team)
 {
   struct status status;
 #pragma omp single
@@ -137,6 +137,7 @@ void linked_cell_find(struct linked_cell *l, const struct discs *d, struct pair_
 #pragma omp single
   {
     if (!team->failed && !overlap_join(list, l->rows, (size_t)l->cells[1], d->count, &status)) team_fail(team, &status);
-    team->stop = team->failed;
+    team_decide(team, TEAM_SEARCHED);
   }
+  return !team->stop[TEAM_SEARCHED];
 }

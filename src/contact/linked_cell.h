@@ -28,6 +28,6 @@ void linked_cell_destroy(struct linked_cell *linked);
 
 /* All pairs with a gap below the skin, by lower index, then higher; their cells_area is 0. Called by all threads of a
  * parallel region or outside of one; the list is complete behind the barrier that ends it. */
-void linked_cell_find(struct linked_cell *linked, const struct discs *discs, struct pair_list *list, struct team *team);
+bool linked_cell_find(struct linked_cell *linked, const struct discs *discs, struct pair_list *list, struct team *team);
 
 #endif

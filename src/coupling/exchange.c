@@ -152,7 +152,7 @@ static void solve_explicit(struct exchange *e, const struct discs *d, size_t i, 
   respond(&e->response[i], r);
 }
 
-void stage_exchange(struct exchange *e, const struct sweep_constants *constants, const struct occupation *o,
+bool stage_exchange(struct exchange *e, const struct sweep_constants *constants, const struct occupation *o,
                     const struct discs *d, int64_t step, struct team *team)
 {
 #pragma omp for schedule(static)
@@ -177,6 +177,7 @@ void stage_exchange(struct exchange *e, const struct sweep_constants *constants,
 #pragma omp single
   {
     e->has_last = true;
-    team->stop = team->failed;
+    team_decide(team, TEAM_EXCHANGED);
   }
+  return !team->stop[TEAM_EXCHANGED];
 }

@@ -62,7 +62,7 @@ bool exchange_store(struct exchange *exchange, size_t discs, struct store *store
 
 /* Adds up and solves for all discs; called by all threads of a parallel region or outside of one. `constants` are those
  * of the coming sweep. Fails when A cannot be inverted: a disc too light and too small for its cells. */
-void stage_exchange(struct exchange *exchange, const struct sweep_constants *constants,
+bool stage_exchange(struct exchange *exchange, const struct sweep_constants *constants,
                     const struct occupation *occupation, const struct discs *discs, int64_t step, struct team *team);
 
 /* What a light disc is held by in a step: c, that of rotation, and the time T. All zero for any other disc. */

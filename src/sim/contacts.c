@@ -230,6 +230,21 @@ static void prepare_all(struct contacts *c, const struct discs *d, const struct 
   wait_for_team(together);
 }
 
+/* A step of more sub-steps than a case may ask for would look like a program that hangs. */
+static bool check_substeps(const struct contacts *c, struct team *team)
+{
+  enum { MOST = 1000000 };
+  if (c->substeps <= MOST) return true;
+  struct status status;
+  status_fail(
+      &status, DELBM_FAILED,
+      "contacts so stiff need %d sub-steps a step, more than %d: use a smaller contact.stiffness, contact.alpha "
+      "or contact.damping, or set contact.substeps",
+      c->substeps, MOST);
+  team_fail(team, &status);
+  return false;
+}
+
 static void follow_disc(struct contacts *c, const struct discs *d, uint32_t i)
 {
   if (i == contact_with_side || c->is_followed[i]) return;
@@ -320,14 +335,13 @@ static void follow(struct contacts *c, const struct exchange *e, struct discs *d
   }
 }
 
-void stage_contact(struct contacts *c, const struct occupation *o, const struct exchange *e, struct discs *d,
+bool stage_contact(struct contacts *c, const struct occupation *o, const struct exchange *e, struct discs *d,
                    struct team *team)
 {
-  if (!c->plan.pairs && !c->plan.walls) return;
-  if (c->plan.pairs && c->scene->contact.search == SEARCH_LINKED_CELL) {
-    linked_cell_find(&c->linked, d, &c->pairs, team);
-    if (team->stop) return;
-  }
+  if (!c->plan.pairs && !c->plan.walls) return true;
+  if (c->plan.pairs && c->scene->contact.search == SEARCH_LINKED_CELL &&
+      !linked_cell_find(&c->linked, d, &c->pairs, team))
+    return false;
 #pragma omp single
   {
     struct status status;
@@ -335,11 +349,13 @@ void stage_contact(struct contacts *c, const struct occupation *o, const struct 
       team_fail(team, &status);
     } else if (c->count <= ALONE) {
       prepare_all(c, d, e, false);
-      follow(c, e, d, false);
+      if (check_substeps(c, team)) follow(c, e, d, false);
     }
-    team->stop = team->failed;
+    team_decide(team, TEAM_MET);
   }
-  if (team->stop || c->count <= ALONE) return;
+  if (team->stop[TEAM_MET]) return false;
+  if (c->count <= ALONE) return true;
   prepare_all(c, d, e, true);
-  follow(c, e, d, true);
+  if (check_substeps(c, team)) follow(c, e, d, true); /* else all leave at the end of the next stage */
+  return true;
 }

@@ -63,8 +63,9 @@ void contacts_destroy(struct contacts *contacts);
 bool contacts_store(struct contacts *contacts, struct store *store, struct status *status);
 
 /* The stage: leaves the discs' contact_fx and contact_fy, and where sub-steps have brought them. Called by all threads of
- * a parallel region or outside of one. Fails when memory runs out. */
-void stage_contact(struct contacts *contacts, const struct occupation *occupation, const struct exchange *exchange,
+ * a parallel region or outside of one. Fails when memory runs out, or contacts need more sub-steps than
+ * a case may ask for. */
+bool stage_contact(struct contacts *contacts, const struct occupation *occupation, const struct exchange *exchange,
                    struct discs *discs, struct team *team);
 
 #endif

@@ -61,7 +61,7 @@ static bool too_fast(const struct discs *d, size_t i)
   return !(left >= 0 && d->vx[i] * d->vx[i] + d->vy[i] * d->vy[i] <= left * left);
 }
 
-void stage_motion(const struct contacts *c, struct exchange *e, struct discs *d, int64_t step, struct team *team)
+bool stage_motion(const struct contacts *c, struct exchange *e, struct discs *d, int64_t step, struct team *team)
 {
 #pragma omp for schedule(static)
   for (size_t i = 0; i < d->count; i++) {
@@ -75,5 +75,6 @@ void stage_motion(const struct contacts *c, struct exchange *e, struct discs *d,
     team_fail(team, &status);
   }
 #pragma omp single
-  team->stop = team->failed;
+  team_decide(team, TEAM_MOVED);
+  return !team->stop[TEAM_MOVED];
 }

@@ -7,7 +7,7 @@
 
 /* Called by all threads of a parallel region or outside of one; each disc is one thread's own. Fails when a disc's speed
  * is not finite or above Mach 0.6. */
-void stage_motion(const struct contacts *contacts, struct exchange *exchange, struct discs *discs, int64_t step,
+bool stage_motion(const struct contacts *contacts, struct exchange *exchange, struct discs *discs, int64_t step,
                   struct team *team);
 
 #endif

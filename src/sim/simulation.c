@@ -120,37 +120,37 @@ static bool discs_stay_within(struct simulation *s, const struct occupation *nex
 {
   if (rows->end - rows->first == s->scene->domain.size[1]) return true;
 #pragma omp single
-  if (!blocked_discs_within(s->scene, next, rows)) {
-    struct status status;
-    status_fail(&status, DELBM_FAILED, "diverged at step %lld: a disc moved by more than a cell in one step",
-                (long long)s->step);
-    team_fail(&s->team, &status);
-    s->team.stop = true;
+  {
+    if (!blocked_discs_within(s->scene, next, rows)) {
+      struct status status;
+      status_fail(&status, DELBM_FAILED, "diverged at step %lld: a disc moved by more than a cell in one step",
+                  (long long)s->step);
+      team_fail(&s->team, &status);
+    }
+    team_decide(&s->team, TEAM_KEPT);
   }
-  return !s->team.stop;
+  return !s->team.stop[TEAM_KEPT];
 }
 
-/* One step of these rows, by all threads of the parallel region. The exchange precedes the contacts so that these, and their
- * sub-steps, act through the same response as the fluid does; and discs are painted where they have just moved before
- * the sweep, so that the sweep can take the sums of the next exchange. */
-static void step(struct simulation *s, const struct rows *rows, double *since)
+/* One step of these rows, by all threads of the parallel region; false where they are to leave it unfinished. The
+ * exchange precedes the contacts so that these, and their sub-steps, act through the same response as the fluid does; and
+ * discs are painted where they have just moved before the sweep, so that the sweep can take the sums of the next
+ * exchange. */
+static bool step(struct simulation *s, const struct rows *rows, double *since)
 {
   struct sweep_discs discs = {0};
   if (s->plan.exchange) {
     const bool moving = s->plan.occupation == OCCUPATION_EVERY_STEP;
     struct occupation *now = present(s), *next = moving ? &s->occupations[!s->present] : now;
-    stage_exchange(&s->exchange, &s->flow.constants, now, &s->discs, s->step, &s->team);
+    if (!stage_exchange(&s->exchange, &s->flow.constants, now, &s->discs, s->step, &s->team)) return false;
     charge(s, STAGE_EXCHANGE, since);
-    if (s->team.stop) return;
-    stage_contact(&s->contacts, now, &s->exchange, &s->discs, &s->team);
+    if (!stage_contact(&s->contacts, now, &s->exchange, &s->discs, &s->team)) return false;
     charge(s, STAGE_CONTACT, since);
-    if (s->team.stop) return;
-    stage_motion(&s->contacts, &s->exchange, &s->discs, s->step, &s->team);
+    if (!stage_motion(&s->contacts, &s->exchange, &s->discs, s->step, &s->team)) return false;
     charge(s, STAGE_EXCHANGE, since);
-    if (s->team.stop) return;
-    if (moving) stage_occupation(next, &s->discs, &s->team);
+    if (moving && !stage_occupation(next, &s->discs, &s->team)) return false;
     charge(s, STAGE_OCCUPATION, since);
-    if (s->team.stop || !discs_stay_within(s, next, rows)) return;
+    if (!discs_stay_within(s, next, rows)) return false;
     discs = (struct sweep_discs){.now = now, .exchange = &s->exchange, .next = next};
   }
   const bool fill_first = s->flow.populations.parity && !s->plan.exchange && boundary_fill_first(s->scene->domain.side);
@@ -160,6 +160,7 @@ static void step(struct simulation *s, const struct rows *rows, double *since)
   }
   stage_sweep(&s->flow, rows, fill_first || s->flow.ghosts_filled, &discs);
   charge(s, STAGE_SWEEP, since);
+  return true;
 }
 
 /* Steps of a scene that is blocked in time: blocks of equal length, none deeper than the tuning says. */
@@ -186,7 +187,7 @@ static void run_blocks(struct simulation *s, int64_t steps)
 static void count_step(struct simulation *s)
 {
 #pragma omp single
-  if (!s->team.stop) {
+  {
     s->step++;
     if (s->plan.occupation == OCCUPATION_EVERY_STEP) s->present ^= 1;
   }
@@ -199,10 +200,7 @@ static void run_single_steps(struct simulation *s, int64_t steps)
 #pragma omp parallel num_threads(s->threads)
   {
     double since = clock_now();
-    for (int64_t k = 0; k < steps && !s->team.stop; k++) {
-      step(s, &all, &since);
-      count_step(s);
-    }
+    for (int64_t k = 0; k < steps && step(s, &all, &since); k++) count_step(s);
   }
 }
 
@@ -214,9 +212,9 @@ static void run_near_block(struct simulation *s, const struct near_rows *near, i
     double since = clock_now();
     stage_sweep_ahead(&s->flow, near, steps);
     charge(s, STAGE_SWEEP, &since);
-    for (int k = 0; k < steps && !s->team.stop; k++) {
+    for (int k = 0; k < steps; k++) {
       const struct rows rows = blocked_near_at(near, k);
-      step(s, &rows, &since);
+      if (!step(s, &rows, &since)) break;
       count_step(s);
     }
   }
@@ -226,7 +224,7 @@ static void run_near_block(struct simulation *s, const struct near_rows *near, i
 static void run_near_blocks(struct simulation *s, int64_t steps)
 {
   const int64_t end = s->step + steps;
-  while (s->step < end && !s->team.stop) {
+  while (s->step < end && !s->team.failed) {
     const int64_t left = end - s->step, depth = s->tuning.best.depth, length = depth < left ? depth : left;
     struct near_rows near;
     if (length > 1 && blocked_near(s->scene, present(s), (int)length, &near))

@@ -616,7 +616,7 @@ static bool prepare_bands(struct occupation *o, struct status *status)
   return list_bands(o, status);
 }
 
-void stage_occupation(struct occupation *o, const struct discs *discs, struct team *team)
+bool stage_occupation(struct occupation *o, const struct discs *discs, struct team *team)
 {
   struct status status;
 #pragma omp for schedule(static)
@@ -624,9 +624,9 @@ void stage_occupation(struct occupation *o, const struct discs *discs, struct te
 #pragma omp single
   {
     if (!prepare_bands(o, &status)) team_fail(team, &status);
-    team->stop = team->failed;
+    team_decide(team, TEAM_LISTED);
   }
-  if (team->stop) return;
+  if (team->stop[TEAM_LISTED]) return false;
 #pragma omp for schedule(static)
   for (int k = 0; k < o->band_count; k++) {
     struct band_draft *draft = &o->drafts[omp_get_thread_num()];
@@ -636,6 +636,7 @@ void stage_occupation(struct occupation *o, const struct discs *discs, struct te
 #pragma omp single
   {
     o->painted = true;
-    team->stop = team->failed;
+    team_decide(team, TEAM_PAINTED);
   }
+  return !team->stop[TEAM_PAINTED];
 }

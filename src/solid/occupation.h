@@ -107,7 +107,7 @@ double occupation_bytes(const struct scene *scene);
 
 /* The stage, called by all threads of a parallel region or outside of one. Bands whose discs have not moved since they were
  * painted are not painted again. Fails if memory runs out. */
-void stage_occupation(struct occupation *occupation, const struct discs *discs, struct team *team);
+bool stage_occupation(struct occupation *occupation, const struct discs *discs, struct team *team);
 
 static const size_t no_run = SIZE_MAX;
 
