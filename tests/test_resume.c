@@ -139,6 +139,49 @@ Test(state, that_has_diverged_is_not_saved)
   fclose(store.stream);
 }
 
+/* Overwrites bytes that stand at a distance behind a mark in a saved state, and says what restoring makes of them. */
+static bool restores_with(const struct scene *scene, const struct saved *saved, const char *mark, size_t behind,
+                          const void *bytes, size_t size, struct status *status)
+{
+  char *copy = malloc(saved->size), *at;
+  cr_assert(copy);
+  memcpy(copy, saved->bytes, saved->size);
+  at = memmem(copy, saved->size, mark, strlen(mark));
+  cr_assert(at);
+  memcpy(at + 16 + behind, bytes, size);
+  struct simulation *simulation = start(scene);
+  struct store store = {.stream = fmemopen(copy, saved->size, "rb"), .path = "forged"};
+  const bool restored = simulation_restore(simulation, &store, status);
+  fclose(store.stream);
+  simulation_destroy(simulation);
+  free(copy);
+  return restored;
+}
+
+Test(state, that_no_run_can_have_reached_is_refused)
+{
+  const double places[] = {NAN, INFINITY, -1e300, 1e300, 1e10}, outside = 70.5, elsewhere = 3;
+  const int parity = 7;
+  struct scene scene = scene_box(64, 60, 0.05, SIDES_CLOSED);
+  scene.domain.side[SIDE_LEFT].type = scene.domain.side[SIDE_RIGHT].type = SIDE_PERIODIC;
+  scene_add_disc(&scene, 7, 1.2, 30, 40);
+  struct status status;
+  struct simulation *simulation = start(&scene);
+  const struct saved saved = save(simulation);
+  simulation_destroy(simulation);
+  for (size_t k = 0; k < sizeof places / sizeof places[0]; k++)
+    for (size_t axis = 0; axis < 2; axis++) {
+      cr_expect_not(restores_with(&scene, &saved, "discs", axis * sizeof(double), &places[k], sizeof(double), &status));
+      cr_expect(strstr(status.message, "cannot read forged: disc 0 at ("), "%s", status.message);
+    }
+  cr_expect_not(restores_with(&scene, &saved, "discs", 0, &outside, sizeof outside, &status), "beyond a periodic side");
+  cr_expect_not(restores_with(&scene, &saved, "populations", 0, &parity, sizeof parity, &status));
+  cr_expect_str_eq(status.message, "cannot read forged: parity 7");
+  cr_expect(restores_with(&scene, &saved, "discs", 0, &elsewhere, sizeof elsewhere, &status), "%s", status.message);
+  free(saved.bytes);
+  scene_clear(&scene);
+}
+
 Test(checkpoint, of_another_case_is_known_and_of_another_length_is_not)
 {
   struct scene scene = scene_crowd(100, 100, 7, 16, 0.9);

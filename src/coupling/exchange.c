@@ -59,9 +59,12 @@ void exchange_destroy(struct exchange *e)
 bool exchange_store(struct exchange *e, size_t discs, struct store *store, struct status *status)
 {
   const size_t bytes = 3 * discs * sizeof(double);
-  return store_mark(store, "exchange", status) && store_bytes(store, &e->has_last, sizeof e->has_last, status) &&
-         (!e->last || store_bytes(store, e->last, bytes, status)) &&
-         (!e->memory || store_bytes(store, e->memory, bytes, status));
+  uint8_t has_last = e->has_last; /* any byte may come back, of which not every one is a bool */
+  const bool stored = store_mark(store, "exchange", status) && store_bytes(store, &has_last, sizeof has_last, status) &&
+                      (!e->last || store_bytes(store, e->last, bytes, status)) &&
+                      (!e->memory || store_bytes(store, e->memory, bytes, status));
+  e->has_last = has_last;
+  return stored;
 }
 
 /* What the sweep found of a disc, row by row from the lowest; with the force of the coming step, and b = 2 share. */

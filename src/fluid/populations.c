@@ -70,6 +70,8 @@ bool populations_store(struct populations *p, struct store *store, struct status
 {
   if (!store_mark(store, "populations", status) || !store_bytes(store, &p->parity, sizeof p->parity, status))
     return false;
+  if (p->parity != 0 && p->parity != 1)
+    return status_fail(status, DELBM_IO, "cannot read %s: parity %d", store->path, p->parity);
   const size_t size = value_size(p->precision);
   for (int i = 0; i < Q; i++)
     for (int y = 0; y < p->ny; y++) {

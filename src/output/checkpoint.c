@@ -103,5 +103,5 @@ bool checkpoint_read(const char *path, struct simulation *simulation, struct run
   const bool restored = store_bytes(&store, &head, sizeof head, status) &&
                         simulation_restore(simulation, &store, status) && store_record(record, &store, status);
   fclose(stream);
-  return restored;
+  return restored && (simulation_step(simulation) == head.step || refuse(status, path, "its state is of another step"));
 }

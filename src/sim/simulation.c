@@ -307,9 +307,25 @@ bool simulation_save(struct simulation *s, struct store *store, struct status *s
   return store_state(s, store, status);
 }
 
+/* Whether discs are where a run can have brought them: elsewhere they would be painted out of all tables. */
+static bool check_places(const struct simulation *s, const struct store *store, struct status *status)
+{
+  const double far = 1e9;
+  for (size_t i = 0; i < s->discs.count; i++) {
+    const double at[2] = {s->discs.x[i], s->discs.y[i]};
+    for (int axis = 0; axis < 2; axis++) {
+      const bool periodic = scene_is_periodic(s->scene, axis);
+      const bool sane = periodic ? at[axis] >= 0 && at[axis] < s->scene->domain.size[axis] : fabs(at[axis]) <= far;
+      if (!sane)
+        return status_fail(status, DELBM_IO, "cannot read %s: disc %zu at (%g, %g)", store->path, i, at[0], at[1]);
+    }
+  }
+  return true;
+}
+
 bool simulation_restore(struct simulation *s, struct store *store, struct status *status)
 {
-  if (!store_state(s, store, status) || !paint(s, status)) return false;
+  if (!store_state(s, store, status) || !check_places(s, store, status) || !paint(s, status)) return false;
   if (s->plan.exchange) stage_first_sums(&s->flow, present(s));
   return true;
 }
