@@ -52,8 +52,9 @@ static void populations_after(const struct scene *scene, const struct blocking *
     }
     step += blocking->depth == 0 ? 1 : block;
   }
-  for (int y = 0; y < NY && flow.populations.parity; y++) boundary_before_row(&flow.populations, scene->domain.side, y);
-  for (int k = 0; k < NX * NY; k++) populations_cell(&flow.populations, k % NX, k / NX, all + k * Q);
+  const int nx = scene->domain.size[0], ny = scene->domain.size[1];
+  for (int y = 0; y < ny && flow.populations.parity; y++) boundary_before_row(&flow.populations, scene->domain.side, y);
+  for (int k = 0; k < nx * ny; k++) populations_cell(&flow.populations, k % nx, k / nx, all + k * Q);
   flow_destroy(&flow);
 }
 
@@ -77,6 +78,24 @@ Test(blocked, any_depth_width_and_number_of_threads_gives_the_bits_of_single_ste
                          "sides %d, force %d, depth %d, width %d, threads %d", sides, force, depths[d], widths[w],
                          threads[t]);
           }
+    }
+}
+
+Test(blocked, deeper_than_the_box_is_wide_gives_the_bits_of_single_steps)
+{
+  static const int sizes[] = {1, 2, 3, 5, 8, 17, 20}, depths[] = {4, 16, 23}, widths[] = {0, 1, 4, 7};
+  static double expected[20 * NY * Q], obtained[20 * NY * Q];
+  for (size_t n = 0; n < sizeof sizes / sizeof sizes[0]; n++)
+    for (int sides = 0; sides < 4; sides++) {
+      const struct scene scene = stirred_box(sizes[n], NY, sides);
+      const size_t bytes = (size_t)sizes[n] * NY * Q * sizeof(double);
+      populations_after(&scene, &(struct blocking){.depth = 0}, 1, expected);
+      for (size_t d = 0; d < sizeof depths / sizeof depths[0]; d++)
+        for (size_t w = 0; w < sizeof widths / sizeof widths[0]; w++) {
+          populations_after(&scene, &(struct blocking){.depth = depths[d], .width = widths[w]}, 1, obtained);
+          cr_expect_eq(memcmp(expected, obtained, bytes), 0, "%d cells wide, sides %d, depth %d, width %d", sizes[n],
+                       sides, depths[d], widths[w]);
+        }
     }
 }
 

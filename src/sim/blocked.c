@@ -55,11 +55,12 @@ static void update_tile(const struct flow *f, int y, int s, int k, int width, bo
 {
   const int nx = f->populations.nx, parity = f->populations.parity ^ (s & 1);
   const bool ring = f->scene->domain.side[SIDE_LEFT].type == SIDE_PERIODIC;
-  const int left = ring ? s : 0; /* where the first tile begins */
+  const bool whole = k == 0 && last;       /* the tile is the row: nothing to retreat from */
+  const int left = ring && !whole ? s : 0; /* where the first tile begins */
   const int x0 = k == 0 ? left : clamp(k * width - s, left, nx);
   const int x1 = last ? nx : clamp((k + 1) * width - s, left, nx);
   update(f, parity, y, x0, x1);
-  if (last && ring) update(f, parity, y, 0, left);
+  if (left > 0 && last) update(f, parity, y, 0, left);
 }
 
 /* A wavefront over the slab, tile by tile. */
@@ -85,7 +86,8 @@ static void sweep_border(const struct flow *f, int border, int steps)
 void stage_sweep_blocked(struct flow *f, const struct blocking *blocking, int steps)
 {
   const int nx = f->populations.nx, ny = f->populations.ny;
-  const int width = blocking->width > 0 && blocking->width < nx ? blocking->width : nx;
+  const bool tiled = blocking->width > 0 && blocking->width < nx && steps <= nx; /* a retreat round the box is none */
+  const int width = tiled ? blocking->width : nx;
   const bool ring = f->populations.periodic_y;
   const struct slab box = {.end = ny, .open_below = ring, .open_above = ring};
   const struct slab slab = slab_of(&box, omp_get_thread_num(), omp_get_num_threads());
