@@ -129,9 +129,7 @@ static bool solve_implicit(struct exchange *e, const struct discs *d, size_t i, 
   const struct held held = exchange_held(e, d, i);
   if (held.time > 0) {
     const double *p = &e->memory[3 * i];
-    r[0] += held.mass * p[0] / held.time;
-    r[1] += held.mass * p[1] / held.time;
-    r[2] += held.inertia * p[2] / held.time;
+    for (int k = 0; k < 3; k++) r[k] += p[k] / held.time;
   }
   if (!invert(&e->gathered[i], d->mass[i] - d->fluid_mass[i] + held.mass,
               d->inertia[i] - d->fluid_inertia[i] + held.inertia, &e->response[i]))

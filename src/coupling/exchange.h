@@ -14,9 +14,11 @@
  * Light discs. m_f counts all fluid inside the disc, but only M0/2 of it follows within the step; the rest, in partly
  * covered cells, follows in the time of sound. Below a density of about 1 - M0/(2 m_f), 0.1 to 0.3, a disc and what
  * follows it at once have less than no inertia, and sound between two discs, or a disc and a wall, feeds on that. So
- * such a disc is given a held mass c that makes up for it, at once, and gives it back over a few passages of sound T:
- *   A = ... + c,  R = ... + c p/T,  p' = (1 - 1/T) p + dV.
- * A steady acceleration is what it was, since then p = T dV; conserved is (m - m_f) V + c p. Rotation likewise.
+ * such a disc is given a held mass c that makes up for it, at once, and gives back the momentum p that this has taken,
+ * over a few passages of sound T:
+ *   A = ... + c,  R = ... + p/T,  p' = (1 - 1/T) p + c dV.
+ * A steady acceleration is what it was, since then p = T c dV; conserved is (m - m_f) V + p, also where c changes as
+ * the disc moves over the cells. Rotation likewise.
  *
  * explicit-averaged, for comparison: A = diag(m, m, I), R = weight + mean of the exchange at V over this step and the
  * last; the sweep sees V.

@@ -12,15 +12,15 @@ static double into_box(const struct scene *scene, int axis, double at)
   return at >= size ? at - size : at;
 }
 
-/* The force that holds a light disc goes over to p, its memory of past acceleration. */
+/* The force that holds a light disc goes over to p, the momentum that it holds. */
 static void release(struct exchange *e, const struct discs *d, size_t i, const double dv[3], double force[3])
 {
   const struct held held = exchange_held(e, d, i);
   const double mass[3] = {held.mass, held.mass, held.inertia};
   for (int k = 0; k < 3 && held.time > 0; k++) {
     double *p = &e->memory[3 * i + (size_t)k];
-    const double change = dv[k] - *p / held.time;
-    force[k] -= mass[k] * change;
+    const double change = mass[k] * dv[k] - *p / held.time;
+    force[k] -= change;
     *p += change;
   }
 }

@@ -40,9 +40,8 @@ static void conserved_momentum(struct simulation *s, double momentum[2])
     momentum[0] += mass * s->discs.vx[i];
     momentum[1] += mass * s->discs.vy[i];
     if (!s->exchange.memory) continue;
-    const double held = exchange_held(&s->exchange, &s->discs, i).mass;
-    momentum[0] += held * s->exchange.memory[3 * i];
-    momentum[1] += held * s->exchange.memory[3 * i + 1];
+    momentum[0] += s->exchange.memory[3 * i];
+    momentum[1] += s->exchange.memory[3 * i + 1];
   }
 }
 
