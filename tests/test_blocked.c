@@ -46,7 +46,7 @@ static void populations_after(const struct scene *scene, const struct blocking *
 #pragma omp parallel num_threads(threads)
     {
       if (blocking->depth == 0)
-        stage_sweep(&flow, &(struct rows){0, NY}, false, &(struct sweep_discs){0});
+        stage_sweep(&flow, &(struct rows){0, scene->domain.size[1]}, false, &(struct sweep_discs){0});
       else
         stage_sweep_blocked(&flow, blocking, block);
     }
