@@ -7,13 +7,15 @@
 #ifndef DELBM_OUTPUT_CHECKPOINT_H
 #define DELBM_OUTPUT_CHECKPOINT_H
 
+#include "output/reversible.h"
 #include "sim/simulation.h"
 
 /* What a run had written when the checkpoint was taken. */
 struct run_record {
-  int64_t table_bytes; /* length of particles.csv */
-  double seconds;      /* wall time of the run */
-  double output;       /* of which spent on output */
+  int64_t table_bytes;           /* length of particles.csv */
+  struct reversible_mark fields; /* of fields.h5 */
+  double seconds;                /* wall time of the run */
+  double output;                 /* of which spent on output */
 };
 
 enum { CHECKPOINT_KERNEL = 32 };

@@ -5,6 +5,7 @@
 #include "output/picture.h"
 
 #include "base/memory.h"
+#include "fluid/vorticity.h"
 #include "output/file.h"
 
 #include <errno.h>
@@ -50,18 +51,15 @@ struct picture_scale picture_scale(const int size[2])
   return scale;
 }
 
-/* Slope at `place` of `count` values that lie `stride` apart: central, one-sided at the two ends. */
-static double slope(const double *here, int place, int count, ptrdiff_t stride)
-{
-  int before = place > 0, after = place < count - 1;
-  return before + after ? (here[after * stride] - here[-before * stride]) / (before + after) : 0;
-}
-
 static double cell_value(const struct picture *picture, int i, int j)
 {
   ptrdiff_t row = picture->size[0], cell = j * row + i;
-  if (picture->quantity == FRAME_VORTICITY)
-    return slope(picture->uy + cell, i, picture->size[0], 1) - slope(picture->ux + cell, j, picture->size[1], row);
+  if (picture->quantity == FRAME_VORTICITY) {
+    const struct stencil x = stencil_at(i, picture->size[0], picture->periodic[0]);
+    const struct stencil y = stencil_at(j, picture->size[1], picture->periodic[1]);
+    return stencil_slope(&x, picture->uy[j * row + x.low], picture->uy[j * row + x.high]) -
+           stencil_slope(&y, picture->ux[y.low * row + i], picture->ux[y.high * row + i]);
+  }
   double ux = picture->ux[cell], uy = picture->uy[cell];
   return sqrt(ux * ux + uy * uy);
 }

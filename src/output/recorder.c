@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "output/checkpoint.h"
 #include "output/csv.h"
+#include "output/fields.h"
 #include "output/file.h"
 #include "output/picture.h"
 #include "scene/scene_write.h"
@@ -28,9 +29,11 @@ enum { CHECKPOINTS = 2 };
 struct recorder {
   const struct scene *scene;
   char *case_path, *table_path, *frames_path, *summary_path, *checkpoint_path[CHECKPOINTS];
+  char *directory;
   int lock;          /* descriptor of the folder; -1: not open */
   struct csv *table; /* particles.csv */
-  struct series rows, frames, checkpoints;
+  struct fields *fields;
+  struct series rows, frames, snapshots, checkpoints;
   int next_checkpoint;  /* which of the two is written next */
   uint32_t fingerprint; /* of the case */
   double *ux, *uy;      /* fields of a frame; NULL without frames */
@@ -78,27 +81,29 @@ static bool remove_frames(const char *directory, int64_t step, struct status *st
   return removed;
 }
 
+/* Checkpoints and what takes fields.h5 back to them. */
 static bool remove_checkpoints(const struct recorder *recorder, struct status *status)
 {
   for (int k = 0; k < CHECKPOINTS; k++)
     if (!file_remove(recorder->checkpoint_path[k], status)) return false;
-  return true;
+  return remove_named(recorder->directory, "fields.h5.undo", status);
 }
 
 static bool remove_earlier_run(const struct recorder *recorder, bool *replaced, struct status *status)
 {
   *replaced = access(recorder->summary_path, F_OK) == 0 || access(recorder->table_path, F_OK) == 0;
   return remove_checkpoints(recorder, status) && file_remove(recorder->summary_path, status) &&
-         file_remove(recorder->table_path, status) && remove_frames(recorder->frames_path, 0, status);
+         file_remove(recorder->table_path, status) && remove_named(recorder->directory, "fields.h5", status) &&
+         remove_named(recorder->directory, "fields.xdmf", status) && remove_frames(recorder->frames_path, 0, status);
 }
 
 /* Two runs in one folder would write over each other. Where a file system knows no locks, none is held. */
-static bool lock_folder(struct recorder *recorder, const char *directory, struct status *status)
+static bool lock_folder(struct recorder *recorder, struct status *status)
 {
-  recorder->lock = open(directory, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (recorder->lock < 0) return file_fail(status, "open folder", directory, errno);
+  recorder->lock = open(recorder->directory, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (recorder->lock < 0) return file_fail(status, "open folder", recorder->directory, errno);
   if (flock(recorder->lock, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return true;
-  return status_fail(status, DELBM_IO, "another delbm is running in %s", directory);
+  return status_fail(status, DELBM_IO, "another delbm is running in %s", recorder->directory);
 }
 
 static bool write_case(const struct recorder *recorder, struct status *status)
@@ -112,9 +117,17 @@ static bool write_case(const struct recorder *recorder, struct status *status)
   return false;
 }
 
-static bool prepare_table(struct recorder *recorder, struct status *status)
+static bool prepare_frames(const struct recorder *recorder, struct status *status)
 {
-  return recorder->rows.every == 0 || csv_open(&recorder->table, recorder->table_path, status);
+  return recorder->frames.every == 0 || file_make_directory(recorder->frames_path, status);
+}
+
+static bool start_files(struct recorder *recorder, struct status *status)
+{
+  return (recorder->rows.every == 0 || csv_open(&recorder->table, recorder->table_path, status)) &&
+         (recorder->snapshots.every == 0 ||
+          fields_open(&recorder->fields, recorder->scene, recorder->directory, NULL, status)) &&
+         prepare_frames(recorder, status);
 }
 
 static double *allocate_field(const struct recorder *recorder, struct status *status)
@@ -123,17 +136,12 @@ static double *allocate_field(const struct recorder *recorder, struct status *st
   return memory_allocate((size_t)size[0] * (size_t)size[1], sizeof(double), "the velocities of a frame", status);
 }
 
-static bool prepare_fields(struct recorder *recorder, struct status *status)
+static bool prepare_velocities(struct recorder *recorder, struct status *status)
 {
   if (recorder->frames.every == 0) return true;
   recorder->ux = allocate_field(recorder, status);
   if (recorder->ux) recorder->uy = allocate_field(recorder, status);
   return recorder->uy;
-}
-
-static bool prepare_frames(const struct recorder *recorder, struct status *status)
-{
-  return recorder->frames.every == 0 || file_make_directory(recorder->frames_path, status);
 }
 
 static bool prepare_paths(struct recorder *recorder, const char *directory, struct status *status)
@@ -149,7 +157,8 @@ static bool prepare_paths(struct recorder *recorder, const char *directory, stru
                {&recorder->checkpoint_path[1], "checkpoint.1"}};
   for (size_t k = 0; k < sizeof paths / sizeof paths[0]; k++)
     if (!(*paths[k].path = file_join(directory, paths[k].name, status))) return false;
-  return true;
+  recorder->directory = strdup(directory);
+  return recorder->directory || status_fail(status, DELBM_FAILED, "out of memory: a path");
 }
 
 /* A recorder with its paths and memory, which has not touched the disk yet. */
@@ -160,14 +169,18 @@ static bool create(struct recorder **recorder, const struct scene *scene, const 
     return status_fail(status, DELBM_INVALID,
                        "output.frames.every is %" PRId64 ", but this build has no libpng: only 0",
                        scene->output.frames.every);
+  if (scene->output.fields.every > 0 && !FIELDS_SUPPORTED)
+    return status_fail(status, DELBM_INVALID, "output.fields.every is %" PRId64 ", but this build has no HDF5: only 0",
+                       scene->output.fields.every);
   *recorder = memory_allocate(1, sizeof **recorder, "the record of the run", status);
   if (!*recorder) return false;
   **recorder = (struct recorder){.scene = scene,
                                  .lock = -1,
                                  .rows = {.every = scene->output.every, .recorded = -1},
                                  .frames = {.every = scene->output.frames.every, .recorded = -1},
+                                 .snapshots = {.every = scene->output.fields.every, .recorded = -1},
                                  .checkpoints = {.every = scene->output.checkpoint.every, .recorded = -1}};
-  return prepare_paths(*recorder, directory, status) && prepare_fields(*recorder, status) &&
+  return prepare_paths(*recorder, directory, status) && prepare_velocities(*recorder, status) &&
          scene_fingerprint(scene, &(*recorder)->fingerprint, status);
 }
 
@@ -180,11 +193,11 @@ static bool destroy_unless(bool good, struct recorder **recorder)
 }
 
 /* What can fail without harm comes before an earlier run is removed. */
-static bool begin(struct recorder *recorder, const char *directory, bool *replaced, struct status *status)
+static bool begin(struct recorder *recorder, bool *replaced, struct status *status)
 {
-  if (!file_make_directory(directory, status) || !lock_folder(recorder, directory, status) ||
+  if (!file_make_directory(recorder->directory, status) || !lock_folder(recorder, status) ||
       !remove_earlier_run(recorder, replaced, status) || !write_case(recorder, status) ||
-      !prepare_table(recorder, status) || !prepare_frames(recorder, status))
+      !start_files(recorder, status))
     return false;
   recorder->start = clock_now();
   return true;
@@ -194,8 +207,7 @@ bool recorder_open(struct recorder **recorder, const struct scene *scene, const 
                    struct status *status)
 {
   *replaced = false;
-  return destroy_unless(create(recorder, scene, directory, status) && begin(*recorder, directory, replaced, status),
-                        recorder);
+  return destroy_unless(create(recorder, scene, directory, status) && begin(*recorder, replaced, status), recorder);
 }
 
 /* The newer of the good checkpoints, and why another was refused. */
@@ -215,23 +227,30 @@ static bool choose_checkpoint(const struct recorder *recorder, int *chosen, stru
   return *chosen >= 0;
 }
 
-static bool reopen_table(struct recorder *recorder, const struct run_record *record, struct status *status)
+static bool reopen_table(struct recorder *recorder, int64_t length, struct status *status)
 {
   if (recorder->rows.every == 0) return true;
-  if (record->table_bytes > 0) return csv_reopen(&recorder->table, recorder->table_path, record->table_bytes, status);
-  return csv_open(&recorder->table, recorder->table_path, status);
+  if (length == 0) return csv_open(&recorder->table, recorder->table_path, status);
+  return csv_reopen(&recorder->table, recorder->table_path, length, status);
 }
 
-static bool take_up(struct recorder *recorder, const char *directory, struct simulation *simulation,
-                    struct resumption *resumption, struct status *status)
+static bool reopen_fields(struct recorder *recorder, const struct reversible_mark *mark, struct status *status)
+{
+  const struct reversible_mark *from = mark->file > 0 ? mark : NULL;
+  return recorder->snapshots.every == 0 ||
+         fields_open(&recorder->fields, recorder->scene, recorder->directory, from, status);
+}
+
+static bool take_up(struct recorder *recorder, struct simulation *simulation, struct resumption *resumption,
+                    struct status *status)
 {
   int chosen;
   struct checkpoint_head head;
   struct run_record record;
-  if (!lock_folder(recorder, directory, status)) return false;
+  if (!lock_folder(recorder, status)) return false;
   if (!choose_checkpoint(recorder, &chosen, &head, &resumption->refused)) {
     if (resumption->refused.code == DELBM_OK)
-      return status_fail(status, DELBM_IO, "nothing to resume: %s holds no checkpoint", directory);
+      return status_fail(status, DELBM_IO, "nothing to resume: %s holds no checkpoint", recorder->directory);
     *status = resumption->refused;
     resumption->refused.code = DELBM_OK;
     return false;
@@ -242,8 +261,8 @@ static bool take_up(struct recorder *recorder, const char *directory, struct sim
   resumption->other_kernel = strcmp(head.kernel, simulation_kernel(simulation)) != 0;
   if (!checkpoint_read(recorder->checkpoint_path[chosen], simulation, &record, status) ||
       !file_remove(recorder->summary_path, status) || !write_case(recorder, status) ||
-      !reopen_table(recorder, &record, status) || !prepare_frames(recorder, status) ||
-      !remove_frames(recorder->frames_path, head.step, status))
+      !reopen_table(recorder, record.table_bytes, status) || !reopen_fields(recorder, &record.fields, status) ||
+      !prepare_frames(recorder, status) || !remove_frames(recorder->frames_path, head.step, status))
     return false;
   recorder->next_checkpoint = !chosen;
   recorder->checkpoints.recorded = head.step;
@@ -256,9 +275,8 @@ bool recorder_resume(struct recorder **recorder, const struct scene *scene, cons
                      struct simulation *simulation, struct resumption *resumption, struct status *status)
 {
   *resumption = (struct resumption){0};
-  return destroy_unless(create(recorder, scene, directory, status) &&
-                            take_up(*recorder, directory, simulation, resumption, status),
-                        recorder);
+  return destroy_unless(
+      create(recorder, scene, directory, status) && take_up(*recorder, simulation, resumption, status), recorder);
 }
 
 static int64_t earlier(int64_t a, int64_t b)
@@ -270,7 +288,8 @@ int64_t recorder_next(const struct recorder *recorder, int64_t step)
 {
   int64_t end = recorder->scene->run.steps;
   const int64_t shown = earlier(series_next(&recorder->rows, step, end), series_next(&recorder->frames, step, end));
-  return earlier(shown, series_next(&recorder->checkpoints, step, end));
+  return earlier(earlier(shown, series_next(&recorder->snapshots, step, end)),
+                 series_next(&recorder->checkpoints, step, end));
 }
 
 static bool record_frame(struct recorder *recorder, struct simulation *simulation, struct status *status)
@@ -297,6 +316,7 @@ static bool write_checkpoint(struct recorder *recorder, struct simulation *simul
 {
   struct run_record record = {.seconds = recorder_elapsed(recorder), .output = recorder->seconds};
   if (recorder->table && !csv_sync(recorder->table, &record.table_bytes, status)) return false;
+  if (recorder->fields && !fields_set_mark(recorder->fields, &record.fields, status)) return false;
   if (!checkpoint_write(recorder->checkpoint_path[recorder->next_checkpoint], recorder->fingerprint, simulation,
                         &record, status))
     return false;
@@ -320,13 +340,16 @@ static bool record_due(struct recorder *recorder, struct simulation *simulation,
   if (step > 0 && series_is_due(&recorder->checkpoints, step, last) && !write_checkpoint(recorder, simulation, status))
     return false;
   bool rows = series_is_due(&recorder->rows, step, last), frame = series_is_due(&recorder->frames, step, last);
-  if (!rows && !frame && !last) return true;
+  bool snapshot = series_is_due(&recorder->snapshots, step, last);
+  if (!rows && !frame && !snapshot && !last) return true;
   /* a table refuses what is not finite by itself; a look at all cells costs more than its rows */
-  if ((frame || last) && !simulation_check(simulation, status)) return false;
+  if ((frame || snapshot || last) && !simulation_check(simulation, status)) return false;
   if (rows && !csv_write(recorder->table, step, simulation_discs(simulation), status)) return false;
   if (rows) recorder->rows.recorded = step;
   if (frame && !record_frame(recorder, simulation, status)) return false;
   if (frame) recorder->frames.recorded = step;
+  if (snapshot && !fields_write(recorder->fields, simulation, status)) return false;
+  if (snapshot) recorder->snapshots.recorded = step;
   /* without `every` there is a checkpoint only of an interrupted run, which has now ended */
   return !last || recorder->checkpoints.every > 0 || remove_checkpoints(recorder, status);
 }
@@ -341,7 +364,9 @@ bool recorder_record(struct recorder *recorder, struct simulation *simulation, b
 
 bool recorder_finish(struct recorder *recorder, struct status *status)
 {
-  return csv_close(&recorder->table, status);
+  struct status ignored;
+  const bool closed = csv_close(&recorder->table, status);
+  return fields_close(&recorder->fields, closed ? status : &ignored) && closed;
 }
 
 bool recorder_summarise(const struct recorder *recorder, const struct summary *summary, struct status *status)
@@ -364,6 +389,8 @@ void recorder_destroy(struct recorder *recorder)
   if (!recorder) return;
   struct status ignored;
   csv_close(&recorder->table, &ignored);
+  fields_close(&recorder->fields, &ignored);
+  free(recorder->directory);
   free(recorder->ux);
   free(recorder->uy);
   free(recorder->case_path);

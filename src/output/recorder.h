@@ -1,5 +1,5 @@
-/* The folder of a run: case.yaml, particles.csv, frames/, checkpoints and run.json, each written when it is due. It is
- * locked while a recorder is open on it. */
+/* The folder of a run: case.yaml, particles.csv, fields.h5, frames/, checkpoints and run.json, each written when it is
+ * due. It is locked while a recorder is open on it. */
 #ifndef DELBM_OUTPUT_RECORDER_H
 #define DELBM_OUTPUT_RECORDER_H
 
@@ -36,7 +36,7 @@ bool recorder_record(struct recorder *recorder, struct simulation *simulation, b
 /* Writes a checkpoint at the simulation's step, in place of the older of the two. */
 bool recorder_checkpoint(struct recorder *recorder, struct simulation *simulation, struct status *status);
 
-/* Closes particles.csv. */
+/* Closes particles.csv and fields.h5. */
 bool recorder_finish(struct recorder *recorder, struct status *status);
 
 /* Writes run.json. */

@@ -119,6 +119,11 @@ struct scene {
       int64_t every; /* 0: only when interrupted */
     } checkpoint;
     struct {
+      int64_t every;    /* 0: none */
+      double region[4]; /* x0, y0, x1, y1: whole numbers */
+      int stride;
+    } fields;
+    struct {
       int64_t every; /* 0: none */
       enum frame_quantity quantity;
       double maximum; /* value at the end of the colour scale; 0: the largest of each frame */

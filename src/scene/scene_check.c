@@ -305,6 +305,19 @@ static void check_fill(struct draft *draft)
   if (check_region(draft, box) && spacing) check_count(draft, box);
 }
 
+/* The part of the box that fields show: whole cells, at least one. */
+static void check_shown(struct draft *draft)
+{
+  const double *region = draft->scene.output.fields.region;
+  const int *size = draft->scene.domain.size;
+  static const char path[] = "output.fields.region";
+  if (!draft_gives(draft, path) || !draft_knows(draft, path) || !draft_knows(draft, "domain.size")) return;
+  bool whole = true;
+  for (int k = 0; k < 4; k++) whole = whole && region[k] == floor(region[k]);
+  if (!whole || !(region[0] < region[2] && region[1] < region[3] && region[2] <= size[0] && region[3] <= size[1]))
+    draft_refuse(draft, path, "whole cells, 0 <= x0 < x1 <= %d and 0 <= y0 < y1 <= %d", size[0], size[1]);
+}
+
 bool scene_check(struct draft *draft, struct status *status)
 {
   check_cells(draft);
@@ -313,6 +326,7 @@ bool scene_check(struct draft *draft, struct status *status)
   check_zero_flux(draft);
   check_search(draft);
   check_fill(draft);
+  check_shown(draft);
   check_density(draft);
   return check_discs(draft, status);
 }

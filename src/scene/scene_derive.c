@@ -1,5 +1,7 @@
 #include "scene/scene_derive.h"
 
+#include <string.h>
+
 static const double default_magic = 3.0 / 16.0;
 static const double default_density = 1.0;
 
@@ -51,10 +53,19 @@ static void derive_zero_flux(struct draft *draft)
   scene->fluid.zero_flux = closed && heavy && has_free_discs(scene);
 }
 
+static void derive_shown(struct draft *draft)
+{
+  struct scene *scene = &draft->scene;
+  if (draft_gives(draft, "output.fields.region")) return;
+  const double box[4] = {0, 0, scene->domain.size[0], scene->domain.size[1]};
+  memcpy(scene->output.fields.region, box, sizeof box);
+}
+
 void scene_derive(struct draft *draft)
 {
   derive_rates(draft);
   derive_densities(draft);
   derive_fill(draft);
   derive_zero_flux(draft);
+  derive_shown(draft);
 }

@@ -91,19 +91,25 @@ struct worst_cell diagnostics_worst(struct populations *p, scan_row *scan, const
   return worst_of_row(p, row);
 }
 
-void diagnostics_fields(struct populations *p, const struct side side[SIDE_COUNT], const double force[2],
-                        const double uniform[2], double *density, double *ux, double *uy)
+void diagnostics_row(const struct populations *p, const struct fluid_force *force, int y, double *density, double *ux,
+                     double *uy)
+{
+  for (int x = 0; x < p->nx; x++) {
+    const struct cell_moments m = moments_at(p, x, y);
+    const double rho = 1 + m.excess;
+    if (density) density[x] = rho;
+    if (ux) ux[x] = (m.jx + (rho * force->mass[0] + force->uniform[0]) / 2) / rho;
+    if (uy) uy[x] = (m.jy + (rho * force->mass[1] + force->uniform[1]) / 2) / rho;
+  }
+}
+
+void diagnostics_fields(struct populations *p, const struct side side[SIDE_COUNT], const struct fluid_force *force,
+                        double *density, double *ux, double *uy)
 {
 #pragma omp parallel for schedule(static) num_threads(threads_for((int64_t)p->nx * p->ny))
   for (int y = 0; y < p->ny; y++) {
+    const size_t at = (size_t)y * (size_t)p->nx;
     fill_ghosts(p, side, y);
-    for (int x = 0; x < p->nx; x++) {
-      const struct cell_moments m = moments_at(p, x, y);
-      const size_t at = (size_t)y * (size_t)p->nx + (size_t)x;
-      const double rho = 1 + m.excess;
-      if (density) density[at] = rho;
-      if (ux) ux[at] = (m.jx + (rho * force[0] + uniform[0]) / 2) / rho;
-      if (uy) uy[at] = (m.jy + (rho * force[1] + uniform[1]) / 2) / rho;
-    }
+    diagnostics_row(p, force, y, density ? density + at : NULL, ux ? ux + at : NULL, uy ? uy + at : NULL);
   }
 }

@@ -5,6 +5,7 @@
 #define DELBM_SIM_FLOW_H
 
 #include "coupling/cover.h"
+#include "sim/diagnostics.h"
 #include "sim/plan.h"
 
 struct flow {
@@ -31,6 +32,13 @@ bool flow_store(struct flow *flow, struct store *store, struct status *status);
 
 /* Prepares for a parallel region of `threads`. */
 bool flow_prepare(struct flow *flow, int threads, struct status *status);
+
+/* The force on the fluid in the coming step. */
+static inline struct fluid_force flow_force(const struct flow *flow)
+{
+  const struct sweep_constants *c = &flow->constants;
+  return (struct fluid_force){{c->force[0], c->force[1]}, {c->uniform[0], c->uniform[1]}};
+}
 
 /* Where discs are in a sweep, and where they will be after it; all NULL in a scene without discs. */
 struct sweep_discs {

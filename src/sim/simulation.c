@@ -356,8 +356,16 @@ const struct occupation *simulation_occupation(const struct simulation *s)
 
 void simulation_fields(struct simulation *s, double *density, double *ux, double *uy)
 {
-  diagnostics_fields(&s->flow.populations, s->scene->domain.side, s->flow.constants.force, s->flow.constants.uniform,
-                     density, ux, uy);
+  const struct fluid_force force = flow_force(&s->flow);
+  diagnostics_fields(&s->flow.populations, s->scene->domain.side, &force, density, ux, uy);
+}
+
+bool simulation_sample(struct simulation *s, const struct sample_grid *grid, const struct sample *sample,
+                       struct status *status)
+{
+  const struct fluid_force force = flow_force(&s->flow);
+  return sample_take(&s->flow.populations, s->scene->domain.side, &force, simulation_occupation(s), grid, sample,
+                     status);
 }
 
 /* Change of the conserved momentum that body forces do not explain; NAN where something else exchanges momentum. */

@@ -7,6 +7,7 @@
 #include "base/store.h"
 #include "base/threads.h"
 #include "scene/scene.h"
+#include "sim/sample.h"
 #include "solid/discs.h"
 
 struct occupation;
@@ -41,6 +42,10 @@ const struct occupation *simulation_occupation(const struct simulation *simulati
 
 /* Density and velocity of every cell, row by row from the bottom: arrays of size[0] * size[1]. Any may be NULL. */
 void simulation_fields(struct simulation *simulation, double *density, double *ux, double *uy);
+
+/* Samples on part of the cells (sample.h). */
+bool simulation_sample(struct simulation *simulation, const struct sample_grid *grid, const struct sample *sample,
+                       struct status *status);
 
 /* The figures of run.json. */
 struct simulation_report {

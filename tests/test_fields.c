@@ -1,0 +1,368 @@
+/* Fields: what is sampled, what stands in fields.h5 and fields.xdmf, and who can read it. */
+#include "drive.h"
+#include "scenes.h"
+#include "shell.h"
+
+#include <math.h>
+#include <signal.h>
+
+static struct sample allocate_sample(size_t points)
+{
+  return (struct sample){.rho = calloc(points, sizeof(double)),
+                         .velocity = calloc(3 * points, sizeof(double)),
+                         .vorticity = calloc(points, sizeof(double)),
+                         .pressure = calloc(points, sizeof(double)),
+                         .occupation = calloc(points, sizeof(double))};
+}
+
+static struct sample take(struct simulation *simulation, const struct sample_grid *grid)
+{
+  struct status status;
+  const struct sample sample = allocate_sample(sample_points(grid));
+  cr_assert(simulation_sample(simulation, grid, &sample, &status), "%s", status.message);
+  return sample;
+}
+
+Test(sample, has_the_values_of_the_cells_it_names)
+{
+  enum { NX = 70, NY = 60 };
+  struct scene scene = scene_box(NX, NY, 0.05, SIDES_PERIODIC);
+  scene.fluid.force[0] = 1e-5;
+  scene_add_disc(&scene, 6.3, 1.5, 20, 30)->velocity[1] = 0.04;
+  const struct sample_grid grid = {.first = {3, 5}, .count = {20, 18}, .stride = 3};
+  struct simulation *simulation = start(&scene);
+  static double rho[NX * NY], ux[NX * NY], uy[NX * NY];
+  for (int odd = 0; odd < 2; odd++) {
+    advance(simulation, 51);
+    simulation_fields(simulation, rho, ux, uy);
+    const struct sample sample = take(simulation, &grid);
+    for (int j = 0; j < grid.count[1]; j++)
+      for (int i = 0; i < grid.count[0]; i++) {
+        const int x = grid.first[0] + 3 * i, y = grid.first[1] + 3 * j, cell = y * NX + x, at = j * grid.count[0] + i;
+        cr_assert_eq(sample.rho[at], rho[cell]);
+        cr_assert_eq(sample.pressure[at], (rho[cell] - 1) / 3);
+        cr_assert_eq(sample.velocity[3 * at], ux[cell]);
+        cr_assert_eq(sample.velocity[3 * at + 1], uy[cell]);
+        cr_assert_eq(sample.velocity[3 * at + 2], 0);
+        const double vorticity = (uy[cell + 1] - uy[cell - 1]) / 2 - (ux[cell + NX] - ux[cell - NX]) / 2;
+        cr_assert_float_eq(sample.vorticity[at], vorticity, 1e-15);
+      }
+  }
+}
+
+Test(sample, counts_what_discs_cover_once)
+{
+  struct scene scene = scene_box(60, 50, 0.05, SIDES_PERIODIC);
+  scene_add_disc(&scene, 7, 1, 58.3, 24.6)->motion = DISC_FIXED;
+  const struct sample_grid grid = {.count = {60, 50}, .stride = 1};
+  struct sample sample = take(start(&scene), &grid);
+  double sum = 0, largest = 0;
+  for (int k = 0; k < 3000; k++) sum += sample.occupation[k], largest = fmax(largest, sample.occupation[k]);
+  cr_expect_float_eq(sum, M_PI * 49, 1e-9, "%.17g", sum);
+  cr_expect_eq(largest, 1);
+  /* a second disc on much of the first: no cell counts more than once */
+  scene_add_disc(&scene, 7, 1, 56, 24.6)->motion = DISC_FIXED;
+  sample = take(start(&scene), &grid);
+  for (int k = 0; k < 3000; k++) cr_assert_leq(sample.occupation[k], 1);
+}
+
+Test(sample, wraps_vorticity_at_periodic_sides_alone)
+{
+  struct scene scene = scene_box(40, 30, 0.05, SIDES_CLOSED);
+  scene.domain.side[SIDE_TOP].velocity[0] = 0.1;
+  const struct sample_grid grid = {.count = {40, 30}, .stride = 1};
+  struct simulation *simulation = start(&scene);
+  advance(simulation, 100);
+  const struct sample sample = take(simulation, &grid);
+  const double *u = sample.velocity;
+  cr_expect_float_eq(sample.vorticity[29 * 40 + 20],
+                     (u[3 * (29 * 40 + 21) + 1] - u[3 * (29 * 40 + 19) + 1]) / 2 -
+                         (u[3 * (29 * 40 + 20)] - u[3 * (28 * 40 + 20)]),
+                     1e-15);
+}
+
+#ifdef DELBM_HDF5
+
+#include "output/hdf5_file.h"
+
+static const char *const flow =
+    "domain: {size: [120, 100], left: periodic, right: periodic}\n"
+    "fluid: {viscosity: 0.05}\n"
+    "particles:\n"
+    "  density: 1.3\n"
+    "  gravity: [0, -4e-4]\n"
+    "  discs: [{radius: 9, position: [50, 70]}, {radius: 8, position: [115, 40], spin: 0.01}]\n"
+    "run: {steps: 250}\n"
+    "output: {every: 50, fields: {every: 100, region: [10, 5, 110, 96], stride: 3}}\n";
+
+static void enter(void)
+{
+  shell_enter();
+  shell_write("flow.yaml", flow);
+}
+
+TestSuite(fields, .init = enter, .fini = shell_leave, .timeout = 120);
+
+/* Debian's Python, which has h5py (python3-h5py), may not be the first on the path. */
+static const char *python(void)
+{
+  static const char *const names[] = {"/usr/bin/python3", "python3"};
+  for (int k = 0; k < 2; k++)
+    if (shell("%s -c 'import h5py' 2>/dev/null", names[k]) == 0) return names[k];
+  cr_skip_test("h5py is not installed");
+}
+
+Test(fields, are_the_same_bytes_from_the_same_run)
+{
+  cr_assert_eq(shell("OMP_NUM_THREADS=1 $DELBM run flow.yaml --quiet --out a >/dev/null && sleep 1.1 && "
+                     "OMP_NUM_THREADS=2 $DELBM run flow.yaml --quiet --out b >/dev/null"),
+               0);
+  cr_expect_eq(shell("cmp a/fields.h5 b/fields.h5 && cmp a/fields.xdmf b/fields.xdmf && test -s a/fields.h5"), 0);
+}
+
+Test(fields, are_read_by_h5py)
+{
+  shell_write("read.py", "import h5py\n"
+                         "f = h5py.File('a/fields.h5', 'r')\n"
+                         "assert list(f) == ['00000000', '00000100', '00000200', '00000250'], list(f)\n"
+                         "assert list(f.attrs['first_cell']) == [10, 5] and f.attrs['stride'] == 3\n"
+                         "assert list(f.attrs['domain_size']) == [120, 100]\n"
+                         "for step in f:\n"
+                         "    g = f[step]\n"
+                         "    assert g.attrs['step'] == int(step)\n"
+                         "    for name in 'rho', 'vorticity', 'pressure', 'occupation':\n"
+                         "        assert g[name].shape == (31, 34) and g[name].compression == 'gzip', name\n"
+                         "        assert g[name].chunks == (31, 34) and g[name].dtype == 'f8'\n"
+                         "    assert g['velocity'].shape == (31, 34, 3)\n"
+                         "    assert abs(g['rho'][:].mean() - 1) < 1e-2\n"
+                         "rows = [r.split(',') for r in open('a/particles.csv')][1:]\n"
+                         "for r in rows:\n"
+                         "    if '%08d' % int(r[0]) not in f: continue\n"
+                         "    d, i = f['%08d/discs' % int(r[0])], int(r[1])\n"
+                         "    assert list(d['id']) == [0, 1, 1] and list(d['radius']) == [9, 8, 8]\n"
+                         "    assert list(d['position'][i]) == [float(r[2]), float(r[3]), 0]\n"
+                         "    assert list(d['velocity'][i]) == [float(r[4]), float(r[5]), 0]\n"
+                         "    assert d['spin'][i] == float(r[6]) and d['angle'][i] == float(r[7])\n"
+                         "    image = list(d['position'][2])\n"
+                         "    if i == 1: assert image == [float(r[2]) - 120, float(r[3]), 0]\n");
+  const char *interpreter = python();
+  cr_assert_eq(shell("$DELBM run flow.yaml --quiet --out a >/dev/null"), 0);
+  cr_expect_eq(shell("%s read.py", interpreter), 0);
+}
+
+Test(fields, open_in_paraview)
+{
+  shell_write("view.py",
+              "from paraview.simple import XDMFReader\n"
+              "from paraview import servermanager\n"
+              "reader = XDMFReader(FileNames=['a/fields.xdmf'])\n"
+              "reader.UpdatePipelineInformation()\n"
+              "assert list(reader.TimestepValues) == [0, 100, 200, 250]\n"
+              "reader.UpdatePipeline(200)\n"
+              "data = servermanager.Fetch(reader)\n"
+              "flow, discs = data.GetBlock(0), data.GetBlock(1)\n"
+              "assert flow.GetBounds() == (10.5, 109.5, 5.5, 95.5, 0, 0), flow.GetBounds()\n"
+              "p = flow.GetPointData()\n"
+              "for name, parts in ('rho', 1), ('velocity', 3), ('vorticity', 1), ('pressure', 1), ('occupation', 1):\n"
+              "    a = p.GetArray(name)\n"
+              "    assert a.GetNumberOfTuples() == 34 * 31 and a.GetNumberOfComponents() == parts, name\n"
+              "assert p.GetArray('occupation').GetRange() == (0, 1)\n"
+              "assert discs.GetNumberOfPoints() == 3 and discs.GetNumberOfCells() > 0\n"
+              "d = discs.GetPointData()\n"
+              "assert d.GetArray('radius').GetRange() == (8, 9) and d.GetArray('id').GetRange() == (0, 1)\n"
+              "assert d.GetArray('velocity').GetRange(1)[0] < 0 and d.GetArray('angle').GetRange()[1] > 0.1\n"
+              "assert abs(discs.GetPoint(1)[0] - discs.GetPoint(2)[0] - 120) < 1e-4\n");
+  if (shell("command -v pvpython >/dev/null") != 0) cr_skip_test("ParaView is not installed");
+  cr_assert_eq(shell("$DELBM run flow.yaml --quiet --out a >/dev/null"), 0);
+  cr_expect_eq(
+      shell("pvpython --force-offscreen-rendering view.py 2>err; c=$?; grep -iE 'error|ERR\\|' err && exit 9; exit $c"),
+      0);
+}
+
+/* A dataset of a/fields.h5, all of it; to be freed. */
+static double *read_set(const char *path)
+{
+  const hid_t file = H5Fopen("a/fields.h5", H5F_ACC_RDONLY, H5P_DEFAULT), set = H5Dopen2(file, path, H5P_DEFAULT);
+  const hid_t space = H5Dget_space(set);
+  double *values = calloc((size_t)H5Sget_simple_extent_npoints(space), sizeof *values);
+  cr_assert_geq(H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), 0, "%s", path);
+  H5Sclose(space);
+  H5Dclose(set);
+  H5Fclose(file);
+  return values;
+}
+
+Test(fields, of_poiseuille_flow_are_the_parabola_and_its_slope)
+{
+  enum { NX = 8, NY = 13 };
+  const double force = 1e-6, viscosity = 0.1;
+  shell_write("channel.yaml", "domain: {size: [8, 13], left: periodic, right: periodic}\n"
+                              "fluid: {viscosity: 0.1, force: [1e-6, 0], collision: trt}\n"
+                              "run: {steps: 20000}\n"
+                              "output: {every: 0, fields: {every: 20000}}\n");
+  cr_assert_eq(shell("$DELBM run channel.yaml --quiet --out a >/dev/null"), 0);
+  double *rho = read_set("00020000/rho"), *u = read_set("00020000/velocity"), *w = read_set("00020000/vorticity");
+  const double largest = force / (2 * viscosity) * NY * NY / 4.0;
+  for (int cell = 0; cell < NX * NY; cell++) {
+    const int y = cell / NX;
+    const double at = y + 0.5 - NY / 2.0;
+    cr_expect_float_eq(u[3 * cell], force / (2 * viscosity) * (NY * NY / 4.0 - at * at), 1e-9 * largest);
+    cr_expect_float_eq(u[3 * cell + 1], 0, 1e-9 * largest);
+    cr_expect_float_eq(rho[cell], 1, 1e-12);
+    if (y > 0 && y < NY - 1) cr_expect_float_eq(w[cell], force / viscosity * at, 1e-9 * largest);
+  }
+  free(rho), free(u), free(w);
+}
+
+Test(fields, of_fluid_at_rest_have_the_pressure_that_carries_its_weight)
+{
+  enum { NX = 6, NY = 30 };
+  const double weight = 1e-5;
+  shell_write("still.yaml", "domain: {size: [6, 30]}\n"
+                            "fluid: {viscosity: 0.3, force: [0, -1e-5], collision: trt}\n"
+                            "run: {steps: 20000}\n"
+                            "output: {every: 0, fields: {every: 20000}}\n");
+  cr_assert_eq(shell("$DELBM run still.yaml --quiet --out a >/dev/null"), 0);
+  double *p = read_set("00020000/pressure"), *u = read_set("00020000/velocity");
+  for (int cell = NX; cell < NX * NY; cell++) {
+    const double rho = 1 + 3 * (p[cell] + p[cell - NX]) / 2;
+    cr_expect_float_eq(p[cell - NX] - p[cell], rho * weight, 1e-8 * weight);
+    cr_expect_float_eq(u[3 * cell + 1], 0, 1e-6 * weight);
+  }
+  free(p), free(u);
+}
+
+Test(fields, of_discs_cover_their_area)
+{
+  shell_write("still.yaml", "domain: {size: [60, 50], left: periodic, right: periodic}\n"
+                            "fluid: {viscosity: 0.05}\n"
+                            "particles: {discs: [{radius: 7, position: [58.3, 24.6], fixed: true}]}\n"
+                            "run: {steps: 0}\n"
+                            "output: {fields: {every: 1}}\n");
+  cr_assert_eq(shell("$DELBM run still.yaml --quiet --out a >/dev/null"), 0);
+  double *occupation = read_set("00000000/occupation"), sum = 0;
+  for (int cell = 0; cell < 60 * 50; cell++) sum += occupation[cell];
+  cr_expect_float_eq(sum, M_PI * 49, 1e-9, "%.17g", sum);
+  free(occupation);
+}
+
+Test(fields, without_checkpoints_leave_no_way_back)
+{
+  cr_assert_eq(shell("$DELBM run flow.yaml --quiet --out a >/dev/null; ls a/*.undo 2>/dev/null"), 2);
+}
+
+/* Writes datasets `from` and on, up to `count` of them. */
+static void add_sets(struct reversible *file, int from, int count)
+{
+  struct status status;
+  struct hdf5_file open;
+  for (int k = from; k < count; k++) {
+    char name[16];
+    snprintf(name, sizeof name, "set%d", k);
+    cr_assert(hdf5_open(&open, file, &status), "%s", status.message);
+    const hsize_t size = (hsize_t)(1 + 10 * (k % 50));
+    const hid_t space = H5Screate_simple(1, &size, NULL), properties = H5Pcreate(H5P_DATASET_CREATE);
+    H5Pset_obj_track_times(properties, false);
+    const hid_t set = H5Dcreate2(open.handle, name, H5T_IEEE_F64LE, space, H5P_DEFAULT, properties, H5P_DEFAULT);
+    const double values[500] = {k, 2, 3};
+    cr_assert_geq(H5Dwrite(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), 0);
+    H5Dclose(set);
+    H5Pclose(properties);
+    H5Sclose(space);
+    cr_assert(hdf5_close(&open, &status), "%s", status.message);
+  }
+}
+
+static void set_mark(struct reversible *file, struct reversible_mark *mark)
+{
+  struct status status;
+  cr_assert(reversible_set_mark(file, mark, &status), "%s", status.message);
+}
+
+/* A process that makes marks and datasets until it is killed; it tells the marks, and copies the file at each. */
+static void write_until_killed(int marks)
+{
+  struct status status;
+  struct reversible file;
+  struct reversible_mark mark;
+  cr_assert(reversible_create(&file, "x.h5", "x.undo", &status), "%s", status.message);
+  add_sets(&file, 0, 20);
+  for (int k = 0; k < 2; k++) {
+    set_mark(&file, &mark);
+    cr_assert_eq(shell("cp x.h5 copy%d", k), 0);
+    cr_assert_eq(write(marks, &mark, sizeof mark), (ssize_t)sizeof mark);
+    add_sets(&file, 20 + 40 * k, 60 + 40 * k);
+  }
+  add_sets(&file, 100, 100000);
+}
+
+Test(fields, file_goes_back_to_its_last_two_marks_byte_for_byte_after_a_kill_at_any_moment)
+{
+  struct status status;
+  struct reversible file;
+  struct reversible_mark mark[2];
+  for (int k = 0; k < 24; k++) {
+    int ends[2];
+    cr_assert_eq(pipe(ends), 0);
+    const pid_t child = fork();
+    if (child == 0) {
+      write_until_killed(ends[1]);
+      _exit(0);
+    }
+    cr_assert_eq(read(ends[0], &mark[0], sizeof mark[0]), (ssize_t)sizeof mark[0]);
+    cr_assert_eq(read(ends[0], &mark[1], sizeof mark[1]), (ssize_t)sizeof mark[1]);
+    usleep((useconds_t)(1000 + 1709 * k));
+    kill(child, SIGKILL);
+    waitpid(child, NULL, 0);
+    close(ends[0]), close(ends[1]);
+    for (int m = 1; m >= 0; m--) {
+      cr_assert(reversible_return(&file, "x.h5", "x.undo", &mark[m], &status), "%s", status.message);
+      cr_expect_eq(shell("cmp x.h5 copy%d", m), 0, "kill %d, mark %d", k, m);
+      reversible_close(&file);
+    }
+    /* and goes on from the first to the second as before */
+    cr_assert(reversible_return(&file, "x.h5", "x.undo", &mark[0], &status), "%s", status.message);
+    add_sets(&file, 20, 60);
+    cr_expect_eq(shell("cmp x.h5 copy1"), 0, "kill %d", k);
+    reversible_close(&file);
+  }
+}
+
+Test(fields, file_that_was_changed_is_refused)
+{
+  cr_assert_eq(shell("$DELBM run flow.yaml --set output.checkpoint.every=110 --quiet --out a >/dev/null; "
+                     "truncate -s 9 a/fields.h5; $DELBM resume a --steps 260 2>err"),
+               4);
+  cr_expect_eq(shell("grep -q 'a/fields.h5 has 9 bytes, fewer than' err"), 0);
+}
+
+Test(fields, that_do_not_fit_on_the_disk_leave_the_earlier_ones)
+{
+  if (shell("unshare -m mount -t tmpfs tmpfs /mnt 2>/dev/null") != 0) cr_skip_test("mounting needs root");
+  cr_assert_eq(
+      shell("$DELBM run flow.yaml --set output.fields.every=10 --set output.checkpoint.every=10 --quiet --out whole "
+            ">/dev/null && mkdir disk"),
+      0);
+  cr_expect_eq(
+      shell("unshare -m sh -c 'mount -t tmpfs -o size=2600k tmpfs disk && "
+            "$DELBM run flow.yaml --set output.fields.every=10 --set output.checkpoint.every=10 --quiet --out disk/cut "
+            ">out 2>err; test $? = 4 || exit 9; "
+            "mount -o remount,size=20000k disk && $DELBM resume disk/cut --quiet >/dev/null || exit 7; "
+            "cmp whole/fields.h5 disk/cut/fields.h5 && cmp whole/fields.xdmf disk/cut/fields.xdmf'"),
+      0);
+  cr_expect_eq(shell("grep -qE '^delbm: cannot write disk/cut/.*: No space left on device$' err"), 0);
+}
+
+#else
+
+TestSuite(fields, .init = shell_enter, .fini = shell_leave);
+
+Test(fields, are_refused_by_a_build_without_hdf5)
+{
+  shell_write("flow.yaml", "domain: {size: [8, 8]}\nfluid: {viscosity: 0.1}\nrun: {steps: 3}\n"
+                           "output: {fields: {every: 1}}\n");
+  cr_expect_eq(shell("$DELBM run flow.yaml --out a 2>err"), 3);
+  cr_expect_eq(shell("grep -q 'output.fields.every is 1, but this build has no HDF5' err && test ! -e a"), 0);
+}
+
+#endif
