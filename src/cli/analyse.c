@@ -1,7 +1,7 @@
 #include "cli/commands.h"
 #include "cli/options.h"
+#include "cli/tables.h"
 
-#include "analysis/analysis.h"
 #include "output/file.h"
 
 #include <stdlib.h>
@@ -36,27 +36,11 @@ static bool write_json(const struct analysis *analysis, const char *path, struct
   return replacement_commit(&file, status);
 }
 
-static bool write_table(const struct settling *settling, const char *directory, const char *name,
-                        void (*write)(const struct settling *, FILE *), struct status *status)
-{
-  char *path = file_join(directory, name, status);
-  struct replacement file;
-  bool written = path && replacement_begin(&file, path, status);
-  if (written) {
-    write(settling, file.stream);
-    written = replacement_commit(&file, status);
-  }
-  free(path);
-  return written;
-}
-
 static bool report(const struct analysis *analysis, const struct request *request, struct status *status)
 {
   analysis_print(analysis, stdout);
   if (request->json && !write_json(analysis, request->json, status)) return false;
-  if (!request->tables || !analysis->has_settling) return true;
-  return write_table(&analysis->settling, request->directory, "settling.csv", analysis_settling_csv, status) &&
-         write_table(&analysis->settling, request->directory, "profile.csv", analysis_profile_csv, status);
+  return !request->tables || !analysis->has_settling || tables_write(&analysis->settling, request->directory, status);
 }
 
 static int analyse_scene(const struct scene *scene, const struct request *request)

@@ -7,6 +7,7 @@ int command_run(int argc, char **argv);
 int command_resume(int argc, char **argv);
 int command_info(int argc, char **argv);
 int command_analyse(int argc, char **argv);
+int command_plot(int argc, char **argv);
 int command_bench(int argc, char **argv);
 
 #endif

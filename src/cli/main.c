@@ -20,6 +20,7 @@ static const struct command commands[] = {
     {"resume", command_resume, "go on with a run from its last checkpoint"},
     {"info", command_info, "show a case and the plan of its run"},
     {"analyse", command_analyse, "report what the discs of a finished run did"},
+    {"plot", command_plot, "draw a run by gnuplot"},
     {"bench", command_bench, "measure speed on this machine"},
 };
 
