@@ -34,6 +34,14 @@ static const char *const crowd = "title: crowd\n"
                                  "run: {steps: 300}\n"
                                  "output: {every: 50}\n";
 
+Test(program, has_its_stages_as_functions_that_a_profiler_names)
+{
+  static const char *const stages[] = {"occupation", "contact", "exchange", "motion", "sweep", "sweep_blocked"};
+  if (shell("command -v nm >/dev/null") != 0) cr_skip_test("nm is not installed");
+  for (size_t k = 0; k < sizeof stages / sizeof stages[0]; k++)
+    cr_expect_eq(shell("nm $DELBM | grep -qi ' t stage_%s$'", stages[k]), 0, "%s", stages[k]);
+}
+
 Test(program, says_how_threads_are_bound)
 {
   shell_write("box.yaml", "domain: {size: [80, 80]}\nfluid: {viscosity: 0.05}\nrun: {steps: 4}\n");
