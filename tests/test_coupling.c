@@ -258,7 +258,7 @@ Test(motion, a_settling_crowd_in_a_closed_box_sinks_steadily_without_ringing)
   scene_clear(&scene);
 }
 
-Test(stability, the_implicit_solve_is_stable_at_any_density_ratio, .timeout = 100)
+Test(stability, the_implicit_solve_is_stable_at_any_density_ratio, .timeout = 100 * SLOWNESS)
 {
   static const double ratios[] = {0.05, 0.3, 0.8, 1.0001, 1.01, 10, 100};
   for (int form = 0; form < 2; form++)

@@ -17,7 +17,7 @@ static void enter(void)
   shell_write("silent.yaml", "domain: {size: [8, 8]}\nfluid: {viscosity: 0.1}\nrun: {steps: 3}\n");
 }
 
-TestSuite(faults, .init = enter, .fini = shell_leave, .timeout = 60);
+TestSuite(faults, .init = enter, .fini = shell_leave, .timeout = 60 * SLOWNESS);
 
 /* Runs a script in a mount namespace of its own; skips the test where that is not allowed. */
 static void need_mounts(void)

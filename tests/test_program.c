@@ -2,7 +2,7 @@
  * program. */
 #include "shell.h"
 
-TestSuite(program, .init = shell_enter, .fini = shell_leave, .timeout = 60);
+TestSuite(program, .init = shell_enter, .fini = shell_leave, .timeout = 60 * SLOWNESS);
 
 static char *read_file(const char *path)
 {

@@ -198,7 +198,7 @@ Test(checkpoint, of_another_case_is_known_and_of_another_length_is_not)
 }
 
 /* The rest is from outside. */
-TestSuite(resume, .init = shell_enter, .fini = shell_leave, .timeout = 120);
+TestSuite(resume, .init = shell_enter, .fini = shell_leave, .timeout = 120 * SLOWNESS);
 
 /* Discs that fall, meet each other and the walls; frames and rows at steps of their own. */
 static const char *const crowd = "title: crowd\n"

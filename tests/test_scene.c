@@ -602,7 +602,7 @@ Test(scene, file_that_is_too_large_is_refused)
   release(&reading);
 }
 
-Test(scene, deep_nesting_is_refused_at_once, .timeout = 10)
+Test(scene, deep_nesting_is_refused_at_once, .timeout = 10 * SLOWNESS)
 {
   size_t size = (size_t)8 << 20;
   char *text = malloc(size);
@@ -671,7 +671,7 @@ static bool strip(char *name, const char *extension)
   return true;
 }
 
-Test(scene, broken_cases_get_the_expected_errors, .timeout = 60)
+Test(scene, broken_cases_get_the_expected_errors, .timeout = 60 * SLOWNESS)
 {
   const char *root = getenv("DELBM_SOURCE_ROOT");
   cr_assert_eq(chdir(root ? root : TEST_DIR), 0);

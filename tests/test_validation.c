@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-TestSuite(validation, .init = shell_enter, .fini = shell_leave, .timeout = 900);
+TestSuite(validation, .init = shell_enter, .fini = shell_leave, .timeout = 900 * SLOWNESS);
 
 /* Runs a case of the source with further settings, results into folder `out`. */
 static void run(const char *out, const char *name, const char *settings)

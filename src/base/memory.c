@@ -5,12 +5,18 @@
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 static const size_t huge_page = (size_t)2 << 20;
 
+double memory_physical(void)
+{
+  return (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
+}
+
 static bool out_of_memory(const char *what, double bytes, struct status *status)
 {
-  return status_fail(status, DELBM_FAILED, "out of memory: %s takes %.3g GiB", what, bytes / (1 << 30));
+  return status_fail(status, DELBM_FAILED, "out of memory: %.3g GiB for %s", bytes / (1 << 30), what);
 }
 
 static size_t round_up(size_t n, size_t to)
@@ -22,7 +28,7 @@ void *memory_allocate(size_t count, size_t size, const char *what, struct status
 {
   size_t bytes = 0;
   void *pointer = NULL;
-  if (!__builtin_mul_overflow(count, size, &bytes) && bytes < SIZE_MAX / 2) {
+  if (!__builtin_mul_overflow(count, size, &bytes) && (double)bytes <= memory_physical()) {
     const size_t alignment = bytes < huge_page ? CACHE_LINE : huge_page;
     bytes = bytes ? round_up(bytes, alignment) : CACHE_LINE;
     pointer = aligned_alloc(alignment, bytes);

@@ -1,11 +1,12 @@
 #include "cli/commands.h"
 #include "cli/options.h"
 
+#include "base/memory.h"
 #include "base/threads.h"
 #include "contact/law.h"
 #include "fluid/sweep.h"
 #include "sim/blocked.h"
-#include "solid/occupation.h"
+#include "sim/footprint.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -153,14 +154,17 @@ static void print_plan(const struct scene *scene)
 
 static void print_memory(const struct scene *scene)
 {
-  const double cells = (double)scene->domain.size[0] * scene->domain.size[1];
-  const double fluid = (double)populations_bytes(scene->domain.size[0], scene->domain.size[1], scene->fluid.precision);
-  const bool moving = plan_of(scene).occupation == OCCUPATION_EVERY_STEP;
-  const double discs = (moving ? 2 : 1) * occupation_bytes(scene); /* of the present step and the next */
-  printf("memory       fluid %.4g MiB (%.1f bytes a cell)", fluid / (1 << 20), fluid / cells);
+  const struct footprint footprint = footprint_of(scene);
+  const double mib = 1 << 20, most = memory_physical();
+  printf("memory       fluid %.4g MiB (%.1f bytes a cell)", footprint.fluid / mib,
+         footprint.fluid / (double)scene_cells(scene));
   if (scene->particles.count > 0)
-    printf(", discs %.4g MiB (%.0f bytes a disc)", discs / (1 << 20), discs / (double)scene->particles.count);
+    printf(", discs %.4g MiB (%.0f bytes a disc)", footprint.discs / mib,
+           footprint.discs / (double)scene->particles.count);
+  if (footprint.frames > 0) printf(", frames %.4g MiB", footprint.frames / mib);
   printf("\n");
+  if (footprint_total(&footprint) > most)
+    printf("  note: more than the %.4g MiB of this machine; it would not be run here\n", most / mib);
 }
 
 static void print_stages(const struct scene *scene, const struct plan *plan)
@@ -212,19 +216,18 @@ int command_info(int argc, char **argv)
       {"set", required_argument, NULL, OPTION_SET}, {"help", no_argument, NULL, OPTION_HELP}, {0}};
   struct settings settings = {0};
   struct scene scene = {0};
-  int code = DELBM_USAGE;
   for (int option; (option = option_next(argc, argv, known)) != OPTION_END;) {
-    if (option == OPTION_SET && settings_add(&settings, optarg, argc, argv)) continue;
-    if (option == OPTION_HELP) {
-      print_help();
-      code = DELBM_OK;
-    }
+    const int code = option == OPTION_SET    ? settings_add(&settings, optarg, argc, argv)
+                     : option == OPTION_HELP ? DELBM_OK
+                                             : DELBM_USAGE;
+    if (option == OPTION_SET && code == DELBM_OK) continue;
+    if (option == OPTION_HELP) print_help();
     free(settings.items);
     return code;
   }
   const char *path = option_operand(argc, argv, "CASE");
-  if (path) code = case_read(&scene, path, &settings);
-  if (path && code == DELBM_OK) code = print_case(&scene);
+  int code = path ? case_read(&scene, path, &settings) : DELBM_USAGE;
+  if (code == DELBM_OK) code = print_case(&scene);
   scene_clear(&scene);
   free(settings.items);
   return code;

@@ -76,20 +76,14 @@ const char *option_operand(int argc, char **argv, const char *what)
   return NULL;
 }
 
-bool settings_add(struct settings *settings, char *setting, int argc, char **argv)
+int settings_add(struct settings *settings, char *setting, int argc, char **argv)
 {
-  if (!strchr(setting, '=') || *setting == '=') {
-    usage_error(argv[0], "'--set %s' is not key=value", setting);
-    return false;
-  }
+  if (!strchr(setting, '=') || *setting == '=') return usage_error(argv[0], "'--set %s' is not key=value", setting);
   struct status status;
   if (!settings->items) settings->items = memory_allocate((size_t)argc, sizeof(char *), "the settings", &status);
-  if (!settings->items) {
-    report_error(&status);
-    return false;
-  }
+  if (!settings->items) return report_error(&status);
   settings->items[settings->count++] = setting;
-  return true;
+  return DELBM_OK;
 }
 
 int case_read(struct scene *scene, const char *path, const struct settings *settings)

@@ -23,8 +23,9 @@ struct settings {
   size_t count;
 };
 
-/* Adds a word given by --set to the command argv[0]; reports one that is not key=value. */
-bool settings_add(struct settings *settings, char *setting, int argc, char **argv);
+/* Adds a word given by --set to the command argv[0]. Returns DELBM_OK, or the exit code of what it has reported: that it
+ * is not key=value, or that there is no memory. */
+int settings_add(struct settings *settings, char *setting, int argc, char **argv);
 
 /* Reads the case; prints all errors found. Returns DELBM_OK with the scene filled in, or the exit code. */
 int case_read(struct scene *scene, const char *path, const struct settings *settings);

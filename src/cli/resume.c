@@ -80,25 +80,23 @@ int command_resume(int argc, char **argv)
                                         {"help", no_argument, NULL, OPTION_HELP},
                                         {0}};
   struct resume_options options = {0};
-  int code = DELBM_USAGE;
   for (int option; (option = option_next(argc, argv, known)) != OPTION_END;) {
     if (option == OPTION_QUIET) {
       options.quiet = true;
       continue;
     }
+    int code = option == OPTION_HELP ? DELBM_OK : DELBM_USAGE;
+    if (option == OPTION_HELP) print_help();
     if (option == OPTION_STEPS) {
       snprintf(options.steps, sizeof options.steps, "run.steps=%s", optarg);
-      if (settings_add(&options.settings, options.steps, argc, argv)) continue;
-    }
-    if (option == OPTION_HELP) {
-      print_help();
-      code = DELBM_OK;
+      code = settings_add(&options.settings, options.steps, argc, argv);
+      if (code == DELBM_OK) continue;
     }
     free(options.settings.items);
     return code;
   }
   options.directory = option_operand(argc, argv, "DIR");
-  if (options.directory) code = resume_directory(&options);
+  const int code = options.directory ? resume_directory(&options) : DELBM_USAGE;
   free(options.settings.items);
   return code;
 }

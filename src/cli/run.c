@@ -49,17 +49,18 @@ static int parse_options(int argc, char **argv, struct run_options *options)
                                         {"help", no_argument, NULL, OPTION_HELP},
                                         {"help-keys", no_argument, NULL, OPTION_HELP_KEYS},
                                         {0}};
+  int code;
   for (int option; (option = option_next(argc, argv, known)) != OPTION_END;) {
     switch (option) {
     case OPTION_OUT:
       options->directory = optarg;
       break;
     case OPTION_SET:
-      if (!settings_add(&options->settings, optarg, argc, argv)) return DELBM_USAGE;
+      if ((code = settings_add(&options->settings, optarg, argc, argv)) != DELBM_OK) return code;
       break;
     case OPTION_PLAN:
       snprintf(options->plan, sizeof options->plan, "run.plan.depth=%s", optarg);
-      if (!settings_add(&options->settings, options->plan, argc, argv)) return DELBM_USAGE;
+      if ((code = settings_add(&options->settings, options->plan, argc, argv)) != DELBM_OK) return code;
       break;
     case OPTION_QUIET:
       options->quiet = true;

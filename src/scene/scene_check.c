@@ -11,7 +11,8 @@ static const double most_cells = 8589934592.0; /* 2^33 */
 static const double cell_bytes = 72;           /* nine populations in double precision */
 static const double most_discs = 5e7;
 static const double most_speed = 0.3;
-static const double clearance = 4; /* cells between a disc and its own image across a periodic axis */
+static const double most_cover = 4; /* the discs' areas together, of the box */
+static const double clearance = 4;  /* cells between a disc and its own image across a periodic axis */
 
 static const double gib = 1 << 30;
 
@@ -235,6 +236,20 @@ static bool check_centres(struct draft *draft, const struct tree_node *list, str
   return true;
 }
 
+/* Discs that lie over each other many times meet in more pairs than any memory holds. */
+static void check_cover(struct draft *draft, const struct tree_node *list)
+{
+  const double box = (double)draft->scene.domain.size[0] * draft->scene.domain.size[1];
+  double covered = 0;
+  for (size_t i = 0; i < list->count; i++) {
+    const double radius = draft->scene.particles.discs[i].radius;
+    if (disc_known(list, i)) covered += fmin(M_PI * radius * radius, box);
+  }
+  if (draft_knows(draft, "domain.size") && covered > most_cover * box)
+    draft_refuse(draft, "particles.discs", "discs that together cover the box at most %g times, not %.4g times",
+                 most_cover, covered / box);
+}
+
 static bool check_discs(struct draft *draft, struct status *status)
 {
   const struct tree_node *list = tree_find(draft->root, "particles.discs");
@@ -242,6 +257,7 @@ static bool check_discs(struct draft *draft, struct status *status)
   for (size_t i = 0; i < list->count; i++) {
     if (disc_known(list, i)) check_disc(draft, i);
   }
+  check_cover(draft, list);
   return check_centres(draft, list, status);
 }
 

@@ -44,11 +44,10 @@ static void refuse_node(const struct reader *reader, struct tree_node *node, con
 
 static bool refuse_syntax(const struct reader *reader, const yaml_parser_t *parser)
 {
-  if (parser->error == YAML_MEMORY_ERROR)
+  if (parser->error == YAML_MEMORY_ERROR || !parser->problem) /* libyaml does not always say that it has no memory */
     return status_fail(reader->status, DELBM_FAILED, "out of memory reading YAML");
   char what[256];
-  const char *problem = parser->problem ? parser->problem : "unknown problem";
-  snprintf(what, sizeof what, "not valid YAML: %s%s%s", problem, parser->context ? ", " : "",
+  snprintf(what, sizeof what, "not valid YAML: %s%s%s", parser->problem, parser->context ? ", " : "",
            parser->context ? parser->context : "");
   return refuse_mark(reader, parser->problem_mark, what);
 }

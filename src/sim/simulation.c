@@ -5,6 +5,7 @@
 #include "fluid/boundary.h"
 #include "sim/diagnostics.h"
 #include "sim/flow.h"
+#include "sim/footprint.h"
 #include "sim/motion.h"
 #include "sim/tuning.h"
 
@@ -71,6 +72,8 @@ static bool paint(struct simulation *s, struct status *status)
 
 bool simulation_create(struct simulation **simulation, const struct scene *scene, struct status *status)
 {
+  *simulation = NULL;
+  if (!footprint_check(scene, memory_physical(), status)) return false;
   struct simulation *s = memory_allocate(1, sizeof *s, "the simulation", status);
   *simulation = s;
   if (!s) return false;

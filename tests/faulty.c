@@ -1,0 +1,209 @@
+/* Failures on demand. This is linked into a program of its own, `delbm-faulty`, where it takes the place of functions of
+ * the C library, for the program and for the libraries that it uses. DELBM_FAIL="memory 17" lets the 17th allocation
+ * after the start of main fail, and so on for `thread` and `file`; "memory 17 on" also all that follow. A call that is
+ * made to fail is named in the file DELBM_FAILED_AT. The delbm that is installed has nothing of this. */
+#include <dirent.h>
+#include <dlfcn.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <pthread.h>
+#include <stdarg.h>
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum kind { KIND_NONE, KIND_MEMORY, KIND_THREAD, KIND_FILE };
+
+static enum kind chosen;
+static long chosen_call;
+static bool lasting;
+static atomic_long calls;
+static int report = -1;
+
+/* The function that the one of this name here stands in front of. */
+#define ORIGINAL(name)                                                                                                 \
+  static __typeof__(&name) original;                                                                                   \
+  if (!original) *(void **)&original = dlsym(RTLD_NEXT, #name);
+
+static bool is_to_fail(enum kind kind, const char *name)
+{
+  if (kind != chosen) return false;
+  const long call = atomic_fetch_add(&calls, 1) + 1;
+  if (call < chosen_call || (call > chosen_call && !lasting)) return false;
+  if (call == chosen_call && report >= 0) dprintf(report, "%s\n", name);
+  return true;
+}
+
+/* Runs after the constructors of the libraries: what these do is not the program's. */
+static __attribute__((constructor)) void arm(void)
+{
+  static const char *const names[] = {"none", "memory", "thread", "file"};
+  const char *wish = getenv("DELBM_FAIL"), *path = getenv("DELBM_FAILED_AT");
+  char name[16] = "", on[4] = "";
+  long call = 0;
+  if (!wish || sscanf(wish, "%15s %ld %3s", name, &call, on) < 2) return;
+  if (path) report = open(path, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+  chosen_call = call;
+  lasting = strcmp(on, "on") == 0;
+  for (int kind = KIND_MEMORY; kind <= KIND_FILE; kind++)
+    if (strcmp(name, names[kind]) == 0) chosen = (enum kind)kind;
+}
+
+static void *no_memory(void)
+{
+  errno = ENOMEM;
+  return NULL;
+}
+
+static int no_room(void)
+{
+  errno = ENOSPC;
+  return -1;
+}
+
+void *malloc(size_t size)
+{
+  ORIGINAL(malloc)
+  return is_to_fail(KIND_MEMORY, "malloc") ? no_memory() : original(size);
+}
+
+void *calloc(size_t count, size_t size)
+{
+  ORIGINAL(calloc)
+  return is_to_fail(KIND_MEMORY, "calloc") ? no_memory() : original(count, size);
+}
+
+void *realloc(void *pointer, size_t size)
+{
+  ORIGINAL(realloc)
+  return is_to_fail(KIND_MEMORY, "realloc") ? no_memory() : original(pointer, size);
+}
+
+void *aligned_alloc(size_t alignment, size_t size)
+{
+  ORIGINAL(aligned_alloc)
+  return is_to_fail(KIND_MEMORY, "aligned_alloc") ? no_memory() : original(alignment, size);
+}
+
+void *mmap(void *address, size_t length, int protection, int flags, int descriptor, off_t offset)
+{
+  ORIGINAL(mmap)
+  if (!is_to_fail(KIND_MEMORY, "mmap")) return original(address, length, protection, flags, descriptor, offset);
+  errno = ENOMEM;
+  return MAP_FAILED;
+}
+
+int pthread_create(pthread_t *thread, const pthread_attr_t *attributes, void *(*start)(void *), void *argument)
+{
+  ORIGINAL(pthread_create)
+  return is_to_fail(KIND_THREAD, "pthread_create") ? EAGAIN : original(thread, attributes, start, argument);
+}
+
+int open(const char *path, int flags, ...)
+{
+  ORIGINAL(open)
+  va_list arguments;
+  va_start(arguments, flags);
+  const mode_t mode = flags & O_CREAT ? va_arg(arguments, mode_t) : 0;
+  va_end(arguments);
+  return is_to_fail(KIND_FILE, "open") ? no_room() : original(path, flags, mode);
+}
+
+FILE *fopen(const char *restrict path, const char *restrict mode)
+{
+  ORIGINAL(fopen)
+  if (!is_to_fail(KIND_FILE, "fopen")) return original(path, mode);
+  errno = ENOSPC;
+  return NULL;
+}
+
+DIR *opendir(const char *path)
+{
+  ORIGINAL(opendir)
+  if (!is_to_fail(KIND_FILE, "opendir")) return original(path);
+  errno = EIO;
+  return NULL;
+}
+
+/* A stream that a write has failed on remembers that. */
+size_t fwrite(const void *restrict data, size_t size, size_t count, FILE *restrict stream)
+{
+  ORIGINAL(fwrite)
+  if (!is_to_fail(KIND_FILE, "fwrite")) return original(data, size, count, stream);
+  errno = ENOSPC;
+  stream->_flags |= 0x20; /* glibc's mark of an error */
+  return 0;
+}
+
+size_t fread(void *restrict data, size_t size, size_t count, FILE *restrict stream)
+{
+  ORIGINAL(fread)
+  if (!is_to_fail(KIND_FILE, "fread")) return original(data, size, count, stream);
+  errno = EIO;
+  stream->_flags |= 0x20;
+  return 0;
+}
+
+int fflush(FILE *stream)
+{
+  ORIGINAL(fflush)
+  return is_to_fail(KIND_FILE, "fflush") ? no_room() : original(stream);
+}
+
+/* What fails to close is closed all the same. */
+int fclose(FILE *stream)
+{
+  ORIGINAL(fclose)
+  const bool fails = is_to_fail(KIND_FILE, "fclose");
+  const int closed = original(stream);
+  return fails ? no_room() : closed;
+}
+
+int close(int descriptor)
+{
+  ORIGINAL(close)
+  const bool fails = is_to_fail(KIND_FILE, "close");
+  const int closed = original(descriptor);
+  return fails ? no_room() : closed;
+}
+
+ssize_t write(int descriptor, const void *data, size_t size)
+{
+  ORIGINAL(write)
+  return is_to_fail(KIND_FILE, "write") ? no_room() : original(descriptor, data, size);
+}
+
+int mkdir(const char *path, mode_t mode)
+{
+  ORIGINAL(mkdir)
+  return is_to_fail(KIND_FILE, "mkdir") ? no_room() : original(path, mode);
+}
+
+int rename(const char *from, const char *to)
+{
+  ORIGINAL(rename)
+  return is_to_fail(KIND_FILE, "rename") ? no_room() : original(from, to);
+}
+
+int fsync(int descriptor)
+{
+  ORIGINAL(fsync)
+  return is_to_fail(KIND_FILE, "fsync") ? no_room() : original(descriptor);
+}
+
+int ftruncate(int descriptor, off_t length)
+{
+  ORIGINAL(ftruncate)
+  return is_to_fail(KIND_FILE, "ftruncate") ? no_room() : original(descriptor, length);
+}
+
+off_t lseek(int descriptor, off_t offset, int whence)
+{
+  ORIGINAL(lseek)
+  return is_to_fail(KIND_FILE, "lseek") ? no_room() : original(descriptor, offset, whence);
+}

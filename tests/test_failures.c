@@ -1,0 +1,115 @@
+/* Every call that can fail does: allocations, threads and files, one after the other, in a small run with discs,
+ * contacts, frames and checkpoints. Whatever fails, the program ends by itself with the exit code of its kind and says
+ * why; what it leaves can be resumed, to the same bytes; and if it calls itself done it has done all. With sanitizers
+ * (`tests/harden asan`) nothing leaks either. By default a sample of the calls; DELBM_EVERY_CALL=1 takes each. */
+#include "shell.h"
+
+static const char *const small = "domain: {size: [40, 30], left: periodic, right: periodic}\n"
+                                 "fluid: {viscosity: 0.05}\n"
+                                 "particles:\n"
+                                 "  density: 1.2\n"
+                                 "  gravity: [0, -1e-3]\n"
+                                 "  discs:\n"
+                                 "    - {radius: 5, position: [10, 5.5]}\n"
+                                 "    - {radius: 4, position: [19, 6.5]}\n"
+                                 "    - {radius: 3, position: [30, 20], fixed: true}\n"
+                                 "contact: {stiffness: 5}\n"
+                                 "run: {steps: 9}\n"
+                                 "output: {every: 2, checkpoint: {every: 3}, frames: {every: 4}}\n";
+
+/* What is made to fail, of which command, and how its end is judged: by a script that returns 0, in which `code` is the
+ * exit code. */
+struct trial {
+  const char *kind, *command, *before, *judge;
+  int stride; /* between the calls that are tried */
+};
+
+/* Shell functions of the judges. */
+static const char *const functions =
+    "same() { cmp whole/particles.csv $1/particles.csv && diff -r whole/frames $1/frames; }\n"
+    "told() { grep -qE \"^(delbm|libgomp): .*($1)\" err; }\n"
+    "clean() { test -z \"$(find cut -name '*.tmp' 2>/dev/null)\"; }\n"
+    "resumable() { if ls cut/checkpoint.[01] >/dev/null 2>&1; then $DELBM resume cut --steps 9 --quiet >/dev/null && "
+    "same cut; "
+    "fi; }\n";
+
+static const char *const no_memory = "case $code in 0) same cut ;; 1) told 'out of memory|Out of memory' ;; "
+                                     "4) told 'Cannot allocate memory' ;; *) false ;; esac && clean && resumable";
+static const char *const no_file =
+    "case $code in 0) same cut ;; 1) told 'out of memory: the fingerprint' ;; 4) told . ;; "
+    "*) false ;; esac && clean && resumable";
+static const char *const no_room_at_all = "case $code in 1|4) told . && resumable ;; *) false ;; esac";
+static const char *const said = "case $code in 0) true ;; 1|4) told . ;; *) false ;; esac";
+
+/* Lets call number `call` fail. False when there is none. */
+static bool try_call(const struct trial *trial, int call, const char *on)
+{
+  const int result = shell("%s\nrm -rf cut at; %s\n"
+                           "DELBM_FAILED_AT=at DELBM_FAIL='%s %d%s' $DELBM_FAULTY %s >out 2>err; code=$?\n"
+                           "test -s at || { test $code = 0 && exit 100; }\n"
+                           "%s",
+                           functions, trial->before, trial->kind, call, on, trial->command, trial->judge);
+  if (result == 100) return false;
+  if (result != 0)
+    shell("echo \"%s %d%s of $DELBM_FAULTY %s: $(cat at)\"; cat err", trial->kind, call, on, trial->command);
+  cr_expect_eq(result, 0, "%s %d%s of %s", trial->kind, call, on, trial->command);
+  return true;
+}
+
+static void try_calls(const struct trial *trial, const char *on)
+{
+  const int stride = getenv("DELBM_EVERY_CALL") ? 1 : trial->stride;
+  int call = 1;
+  while (try_call(trial, call, on)) call += stride;
+  cr_expect_gt(call, 1, "nothing of the kind is called");
+}
+
+static void enter(void)
+{
+  shell_enter();
+  setenv("DELBM_FAULTY", DELBM_FAULTY, 1);
+  setenv("OMP_NUM_THREADS", "1", 1);
+  setenv("GOMP_SPINCOUNT", "500", 1); /* else the program begins twice, and the first time nothing matters */
+  shell_write("small.yaml", small);
+  cr_assert_eq(shell("$DELBM run small.yaml --quiet --out whole >/dev/null && "
+                     "$DELBM run small.yaml --quiet --set run.steps=5 --out part >/dev/null"),
+               0);
+}
+
+TestSuite(failures, .init = enter, .fini = shell_leave, .timeout = 100 * SLOWNESS);
+
+Test(failures, of_any_allocation_end_a_run_with_words)
+{
+  try_calls(&(struct trial){"memory", "run small.yaml --quiet --out cut", "", no_memory, 181}, "");
+}
+
+Test(failures, of_any_allocation_end_resume_info_and_analyse_with_words)
+{
+  try_calls(&(struct trial){"memory", "resume cut --steps 9 --quiet", "cp -r part cut", no_memory, 211}, "");
+  try_calls(&(struct trial){"memory", "info small.yaml", "", said, 283}, "");
+  try_calls(&(struct trial){"memory", "analyse whole --json figures.json --tables", "", said, 283}, "");
+}
+
+Test(failures, of_any_file_end_a_run_with_words)
+{
+  try_calls(&(struct trial){"file", "run small.yaml --quiet --out cut", "", no_file, 43}, "");
+}
+
+Test(failures, of_any_file_end_resume_and_analyse_with_words)
+{
+  try_calls(&(struct trial){"file", "resume cut --steps 9 --quiet", "cp -r part cut", no_file, 43}, "");
+  try_calls(&(struct trial){"file", "analyse whole --json figures.json --tables", "", said, 13}, "");
+}
+
+Test(failures, of_all_files_from_some_point_on_leave_the_last_good_checkpoint)
+{
+  try_calls(&(struct trial){"file", "run small.yaml --quiet --out cut", "", no_room_at_all, 89}, " on");
+}
+
+Test(failures, of_any_thread_end_a_run_with_words)
+{
+  setenv("OMP_NUM_THREADS", "3", 1);
+  try_calls(&(struct trial){"thread", "run small.yaml --quiet --out cut --set domain.size=[160,80]", "",
+                            "test $code = 1 && told 'Thread creation failed'", 1},
+            "");
+}
