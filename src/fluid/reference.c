@@ -12,7 +12,7 @@ bool reference_create(struct reference *r, int nx, int ny, struct status *status
   *r = (struct reference){.nx = nx, .ny = ny};
   r->f = memory_allocate(count, sizeof *r->f, "the reference populations", status);
   if (r->f) r->collided = memory_allocate(count, sizeof *r->collided, "the reference populations", status);
-  if (!r->collided) {
+  if (!r->f || !r->collided) {
     reference_destroy(r);
     return false;
   }

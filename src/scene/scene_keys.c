@@ -114,11 +114,12 @@ static void consider(struct nearest *nearest, const char *path, size_t length)
 {
   char candidate[KEY_PATH];
   snprintf(candidate, sizeof candidate, "%.*s", (int)length, path);
-  if (length > 2 && strcmp(candidate + length - 2, "[]") == 0) candidate[length - 2] = '\0';
+  char *brackets = strstr(candidate, "[]");
+  if (brackets && brackets[2] == '\0') *brackets = '\0'; /* at the end: the list itself */
   size_t distance = unlikeness(nearest->section, nearest->name, candidate);
   if (distance >= nearest->distance) return;
   nearest->distance = distance;
-  strcpy(nearest->path, candidate);
+  snprintf(nearest->path, KEY_PATH, "%s", candidate);
 }
 
 void key_nearest(const char *section, const char *name, char path[KEY_PATH])

@@ -140,7 +140,7 @@ static void line_end(struct line *line)
     while (end > 0 && ((unsigned char)line->text[end - 1] & 0xC0) == 0x80) end--;
     if (end > 0 && (unsigned char)line->text[end - 1] >= 0xC0) end--;
   }
-  strcpy(line->text + end, line->cut ? "..." : "");
+  memcpy(line->text + end, line->cut ? "..." : "", line->cut ? sizeof "..." : 1);
 }
 
 static void line_node(struct line *line, const struct tree_node *node)
@@ -169,7 +169,7 @@ void tree_print(const struct tree_node *node, char text[TREE_TEXT])
   struct line line = {.text = text, .limit = PRINTED_BYTES};
   line_node(&line, node);
   line_end(&line);
-  if (*text == '\0') strcpy(text, "nothing");
+  if (*text == '\0') snprintf(text, TREE_TEXT, "nothing");
 }
 
 void tree_show(const char *text, char shown[TREE_TEXT])

@@ -217,7 +217,7 @@ static void format_numbers(const struct key *key, const unsigned char *field, ch
     length += (size_t)snprintf(text + length, VALUE_TEXT - length, "%s%s", before, number);
   }
   if (count > 1) snprintf(text + length, VALUE_TEXT - length, "]");
-  if (key_is_automatic(key) && strcmp(text, "0") == 0) strcpy(text, "auto");
+  if (key_is_automatic(key) && strcmp(text, "0") == 0) snprintf(text, VALUE_TEXT, "auto");
 }
 
 static void format_choice(const char *choices, const unsigned char *field, char text[VALUE_TEXT])
@@ -239,7 +239,7 @@ void value_format(const struct key *key, const void *owner, char text[VALUE_TEXT
   } else {
     bool flag;
     memcpy(&flag, field, sizeof flag);
-    strcpy(text, flag ? "true" : "false");
+    snprintf(text, VALUE_TEXT, "%s", flag ? "true" : "false");
   }
 }
 

@@ -15,9 +15,9 @@ static double magic_from_rate(double rate, double viscosity)
   double low = 0, high = 10, magic = (1 / rate - 0.5) * (3 * viscosity);
   for (int digits = 1; digits <= 17; digits++) {
     char text[32];
-    double rounded;
     snprintf(text, sizeof text, "%.*g", digits, magic);
-    if (sscanf(text, "%lf", &rounded) == 1 && rate_from_magic(rounded, viscosity) == rate) return rounded;
+    const double rounded = strtod(text, NULL);
+    if (rate_from_magic(rounded, viscosity) == rate) return rounded;
   }
   while (rate_from_magic(magic, viscosity) != rate) {
     if (rate_from_magic(magic, viscosity) > rate)
