@@ -165,3 +165,21 @@ Test(program, an_interrupted_run_ends_in_order)
                0);
   cr_expect(contains("o/run.json", "\"status\": \"interrupted\""));
 }
+
+Test(program, shows_a_title_without_its_control_characters)
+{
+  shell_write("loud.yaml", "title: \"\\e[31mred\\nsecond line\"\ndomain: {size: [8, 8]}\nfluid: {viscosity: 0.1}\n"
+                           "run: {steps: 1}\n");
+  cr_expect_eq(shell("$DELBM info loud.yaml >out && grep -q '^case         loud:  \\[31mred second line$' out && "
+                     "! grep -q \"$(printf '\\033')\" out"),
+               0);
+}
+
+Test(program, many_more_threads_than_cores_change_nothing)
+{
+  shell_write("crowd.yaml", crowd);
+  cr_expect_eq(shell("for n in 1 64; do OMP_NUM_THREADS=$n $DELBM run crowd.yaml --quiet --set run.steps=20 --set "
+                     "domain.size=[512,512] --out out$n >/dev/null || exit 1; done; cmp out1/particles.csv "
+                     "out64/particles.csv && grep -q '\"threads\": 64' out64/run.json"),
+               0);
+}

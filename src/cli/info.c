@@ -5,6 +5,7 @@
 #include "base/threads.h"
 #include "contact/law.h"
 #include "fluid/sweep.h"
+#include "scene/scene_tree.h"
 #include "sim/blocked.h"
 #include "sim/footprint.h"
 
@@ -193,7 +194,9 @@ static int print_case(const struct scene *scene)
   const struct plan plan = plan_of(scene);
   const struct sweep_kernel *kernel = sweep_find(scene->fluid.kernel, scene->fluid.precision, &status);
   if (!kernel) return report_error(&status);
-  printf("case         %s%s%s\n", scene->name, *scene->title ? ": " : "", scene->title);
+  char title[TREE_TEXT]; /* whatever a case holds, a terminal is not to obey it */
+  tree_show(scene->title, title);
+  printf("case         %s%s%s\n", scene->name, *title ? ": " : "", title);
   print_box(scene);
   print_fluid(scene);
   print_speeds(scene);
