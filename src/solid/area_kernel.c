@@ -140,7 +140,10 @@ static void narrow_rows(double radius, double x, const struct lines *row_lines, 
   _Alignas(64) double table[AREA_ROWS + 1][NARROW + 2 * VECTOR];
   struct lines column_lines;
   lines_at(radius, x, column, columns, &column_lines);
-  for (int r = from; r <= end; r++) corners(radius, row_lines, r - from, 0, columns, &column_lines, table[r - from]);
+  for (int r = from; r <= end; r++) {
+    corners(radius, row_lines, r - from, 0, columns, &column_lines, table[r - from]);
+    memset(table[r - from] + whole_vectors(columns), 0, VECTOR * sizeof table[0][0]); /* what the last vector reads */
+  }
   for (int r = from; r < end; r++) {
     cells(table[r - from], table[r - from + 1], e->first[r], e->end[r], e->full[r], e->full_end[r], eps);
     eps += e->end[r] - e->first[r];
