@@ -41,31 +41,57 @@ bool flow_prepare(struct flow *f, int threads, struct status *status)
   return true;
 }
 
-/* Equilibrium at the reference density and momentum j, as deviations. */
-static void set_equilibrium(struct populations *p, int x, int y, double jx, double jy)
+/* Equilibrium, and the stress that goes with the gradient, as deviations. */
+static void set_state(struct flow *f, int x, int y, const struct flow_state *state)
 {
+  struct populations *p = &f->populations;
+  const double rho = state->density, (*du)[2] = state->gradient, *force = f->constants.force;
+  const double jx = rho * (state->velocity[0] - force[0] / 2), jy = rho * (state->velocity[1] - force[1] / 2);
+  const double stress = rho / (3 * f->constants.rates.nu);
   double m[Q], g[Q];
-  moments_equilibrium(1, jx, jy, m);
+  moments_equilibrium(rho, jx, jy, m);
+  m[M_PXX] -= 2 * stress * (du[0][0] - du[1][1]);
+  m[M_PXY] -= stress * (du[0][1] + du[1][0]);
   populations_from_moments(m, g);
   for (int i = 0; i < Q; i++) populations_set(p, populations_source(p, i, x, y), g[i] - d2q9_weight[i]);
 }
 
-void flow_start(struct flow *f, const struct occupation *o, const struct discs *discs)
+static struct flow_state at_rest(const void *context, int x, int y)
 {
-  const double at_rest[2] = {-f->constants.force[0] / 2, -f->constants.force[1] / 2};
-  const bool forced = at_rest[0] != 0 || at_rest[1] != 0;
+  (void)context, (void)x, (void)y;
+  return (struct flow_state){.density = 1};
+}
+
+/* The state with the part `b` of it moving as a rigid body. */
+static struct flow_state mixed(struct flow_state state, double b, const double velocity[2])
+{
+  for (int axis = 0; axis < 2; axis++) {
+    state.velocity[axis] = (1 - b) * state.velocity[axis] + b * velocity[axis];
+    for (int k = 0; k < 2; k++) state.gradient[axis][k] *= 1 - b;
+  }
+  return state;
+}
+
+void flow_start(struct flow *f, flow_initial *initial, const void *context, const struct occupation *o,
+                const struct discs *discs)
+{
+  /* populations begin as fluid at rest */
+  const bool write = initial || f->constants.force[0] != 0 || f->constants.force[1] != 0;
+  if (!initial) initial = at_rest;
   for (int y = 0; y < f->populations.ny; y++) {
-    for (int x = 0; forced && x < f->populations.nx; x++)
-      set_equilibrium(&f->populations, x, y, at_rest[0], at_rest[1]);
+    for (int x = 0; write && x < f->populations.nx; x++) {
+      const struct flow_state state = initial(context, x, y);
+      set_state(f, x, y, &state);
+    }
     size_t count = 0;
     const struct run *runs = o ? occupation_row(o, y, &count) : NULL;
     for (size_t r = 0; r < count; r++) {
       const size_t disc = runs[r].disc;
       for (int k = 0; k < runs[r].n; k++) {
         const double b = occupation_band(o, y)->share[runs[r].share + (size_t)k], omega = discs->omega[disc];
-        const double vx = discs->vx[disc] - omega * runs[r].ry, vy = discs->vy[disc] + omega * (runs[r].rx + k);
-        if (vx != 0 || vy != 0)
-          set_equilibrium(&f->populations, runs[r].x + k, y, at_rest[0] + b * vx, at_rest[1] + b * vy);
+        const double v[2] = {discs->vx[disc] - omega * runs[r].ry, discs->vy[disc] + omega * (runs[r].rx + k)};
+        const struct flow_state state = mixed(initial(context, runs[r].x + k, y), b, v);
+        if (write || v[0] != 0 || v[1] != 0) set_state(f, runs[r].x + k, y, &state);
       }
     }
   }

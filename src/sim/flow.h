@@ -6,6 +6,7 @@
 
 #include "coupling/cover.h"
 #include "sim/diagnostics.h"
+#include "sim/initial.h"
 #include "sim/plan.h"
 
 struct flow {
@@ -23,9 +24,11 @@ struct flow {
 bool flow_create(struct flow *flow, const struct scene *scene, const struct plan *plan, struct status *status);
 void flow_destroy(struct flow *flow);
 
-/* The initial state: fluid at rest, (j + F/2)/rho = 0, and inside discs moving with them. Fluid that started out of
- * step with its disc would be reflected to and fro about its velocity, for ever in the owen form. */
-void flow_start(struct flow *flow, const struct occupation *occupation, const struct discs *discs);
+/* The initial state: (j + F/2)/rho and the viscous stress as `initial` has them, or with NULL fluid at rest; inside
+ * discs moving with them. Fluid that started out of step with its disc would be reflected to and fro about its velocity,
+ * for ever in the owen form. */
+void flow_start(struct flow *flow, flow_initial *initial, const void *context, const struct occupation *occupation,
+                const struct discs *discs);
 
 /* Saves or restores the fluid and the uniform force of the coming step. */
 bool flow_store(struct flow *flow, struct store *store, struct status *status);

@@ -70,6 +70,13 @@ static bool paint(struct simulation *s, struct status *status)
   return !s->team.failed;
 }
 
+void simulation_start(struct simulation *s, flow_initial *initial, const void *context)
+{
+  flow_start(&s->flow, initial, context, s->plan.exchange ? present(s) : NULL, &s->discs);
+  if (s->plan.exchange) stage_first_sums(&s->flow, present(s));
+  conserved_momentum(s, s->initial_momentum);
+}
+
 bool simulation_create(struct simulation **simulation, const struct scene *scene, struct status *status)
 {
   *simulation = NULL;
@@ -89,9 +96,7 @@ bool simulation_create(struct simulation **simulation, const struct scene *scene
     *simulation = NULL;
     return false;
   }
-  flow_start(&s->flow, s->plan.exchange ? present(s) : NULL, &s->discs);
-  if (s->plan.exchange) stage_first_sums(&s->flow, present(s));
-  conserved_momentum(s, s->initial_momentum);
+  simulation_start(s, NULL, NULL);
   return true;
 }
 

@@ -7,6 +7,7 @@
 #include "base/store.h"
 #include "base/threads.h"
 #include "scene/scene.h"
+#include "sim/initial.h"
 #include "sim/sample.h"
 #include "solid/discs.h"
 
@@ -16,6 +17,9 @@ struct simulation;
 /* Sets up fluid at rest (density 1) and the scene's discs. The scene must outlive the simulation. */
 bool simulation_create(struct simulation **simulation, const struct scene *scene, struct status *status);
 void simulation_destroy(struct simulation *simulation);
+
+/* Before the first step: starts from another state of the fluid than rest. */
+void simulation_start(struct simulation *simulation, flow_initial *initial, const void *context);
 
 /* Advances by `steps` steps. Fails (DELBM_FAILED) when the run has diverged: a value that is not finite, or a Mach
  * number above 0.6, found at the latest run.check steps after it arose; the message says which, where and when. */
