@@ -10,7 +10,8 @@ const struct bench *bench_at(size_t index)
       {"step", "what does a step with discs cost, stage by stage, against one without?", bench_step},
       {"occupation", "what do the areas of covered cells cost, and the stage that lays them out?", bench_occupation},
       {"contact", "what does finding contacts by the grid cost, against linked cells?", bench_contact},
-      {"drag", "how does the drag of a square array depend on form, rates and viscosity?", bench_drag},
+      {"accuracy", "what error does each choice make, for which time?", bench_accuracy},
+      {"drag", "how does the drag of a square array depend on form, rates, viscosity and solid fraction?", bench_drag},
       {"overlap", "how does the overlap area grow with distance, and how does the one by cells differ?", bench_overlap},
   };
   return index < sizeof all / sizeof all[0] ? &all[index] : NULL;

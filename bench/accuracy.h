@@ -1,0 +1,57 @@
+/* Error against cost: cases with a known answer, run at several resolutions for each choice that a user has. A case only
+ * says how to run one of these; accuracy.c does the rest. */
+#ifndef DELBM_BENCH_ACCURACY_H
+#define DELBM_BENCH_ACCURACY_H
+
+#include "scenes.h"
+#include "sim/simulation.h"
+
+/* The last two are mrt with the rate q from the magic parameter, 3/16 and 1/12. */
+enum accuracy_operator { OPERATOR_BGK, OPERATOR_TRT, OPERATOR_MRT, OPERATOR_MAGIC, OPERATOR_TWELFTH, OPERATOR_COUNT };
+
+struct accuracy_choice {
+  enum accuracy_operator operator;
+  enum coupling_form form;
+  enum precision precision;
+  enum contact_area area;
+};
+
+/* Of one run. Time and updates are those of the steps alone. */
+struct accuracy_outcome {
+  double error; /* NAN where the run diverged */
+  double seconds, updates;
+};
+
+/* `context` is what the case has prepared. */
+typedef bool accuracy_run(void *context, const struct accuracy_choice *choice, int resolution,
+                          struct accuracy_outcome *outcome, struct status *status);
+
+enum { RESOLUTIONS = 5 };
+
+struct accuracy_case {
+  const char *name;
+  const char *error;           /* what is measured, against what */
+  const char *axis;            /* what the resolution counts */
+  int resolution[RESOLUTIONS]; /* ends with 0 if there are fewer */
+  int quick;                   /* how many of these a quick run takes */
+  bool with_forms, with_areas; /* else those of the program's defaults; contacts do not depend on the operator */
+  accuracy_run *run;
+  void *(*prepare)(bool quick, struct status *status); /* what all runs share; NULL: nothing */
+  void (*finish)(void *context);
+};
+
+extern const struct accuracy_case accuracy_taylor_green, accuracy_poiseuille, accuracy_couette, accuracy_shear_layer,
+    accuracy_spin, accuracy_drag, accuracy_settling, accuracy_crossing, accuracy_impact;
+
+/* A box as scene_box, with what the choice says. */
+struct scene accuracy_scene(const struct accuracy_choice *choice, int nx, int ny, double viscosity, enum sides sides);
+void accuracy_apply(const struct accuracy_choice *choice, struct scene *scene);
+
+/* Advances, adding to the cost. */
+bool accuracy_advance(struct simulation *simulation, int64_t steps, struct accuracy_outcome *outcome,
+                      struct status *status);
+
+/* |u - exact| / |exact|, both in the mean square over all cells; exact is [0] ux and [1] uy, row by row. */
+bool accuracy_field_error(struct simulation *simulation, double *const exact[2], double *error, struct status *status);
+
+#endif
