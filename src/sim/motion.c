@@ -61,18 +61,38 @@ static bool too_fast(const struct discs *d, size_t i)
   return !(left >= 0 && d->vx[i] * d->vx[i] + d->vy[i] * d->vy[i] <= left * left);
 }
 
+/* Beyond a side, which holds free discs back as a wall does unless they are too heavy or too fast for it. */
+static bool has_left(const struct scene *scene, const struct discs *d, size_t i)
+{
+  const int *size = scene->domain.size;
+  const bool inside = d->x[i] >= 0 && d->x[i] <= size[0] && d->y[i] >= 0 && d->y[i] <= size[1];
+  return d->motion[i] == DISC_FREE && !inside;
+}
+
+/* False, with the reason, if the disc that came from there cannot go on. */
+static bool check_disc(const struct scene *scene, const struct discs *d, size_t i, int64_t step, const double from[2],
+                       struct status *status)
+{
+  if (too_fast(d, i))
+    return status_fail(status, DELBM_FAILED,
+                       "diverged at step %lld: disc %zu near (%.1f, %.1f) moves at (%g, %g), spin %g: above Mach 0.6",
+                       (long long)step, i, from[0], from[1], d->vx[i], d->vy[i], d->omega[i]);
+  if (has_left(scene, d, i))
+    return status_fail(status, DELBM_FAILED,
+                       "step %lld: disc %zu near (%.1f, %.1f) was pushed out of the box: contact.stiffness, %g, is too "
+                       "small for its weight or speed",
+                       (long long)step, i, from[0], from[1], scene->contact.stiffness);
+  return true;
+}
+
 bool stage_motion(const struct contacts *c, struct exchange *e, struct discs *d, int64_t step, struct team *team)
 {
 #pragma omp for schedule(static)
   for (size_t i = 0; i < d->count; i++) {
-    const double x = d->x[i], y = d->y[i];
-    finish_disc(c, e, d, i);
-    if (!too_fast(d, i)) continue;
+    const double from[2] = {d->x[i], d->y[i]};
     struct status status;
-    status_fail(&status, DELBM_FAILED,
-                "diverged at step %lld: disc %zu near (%.1f, %.1f) moves at (%g, %g), spin %g: above Mach 0.6",
-                (long long)step, i, x, y, d->vx[i], d->vy[i], d->omega[i]);
-    team_fail(team, &status);
+    finish_disc(c, e, d, i);
+    if (!check_disc(c->scene, d, i, step, from, &status)) team_fail(team, &status);
   }
 #pragma omp single
   team_decide(team, TEAM_MOVED);

@@ -6,7 +6,7 @@
 #include "sim/contacts.h"
 
 /* Called by all threads of a parallel region or outside of one; each disc is one thread's own. Fails when a disc's speed
- * is not finite or above Mach 0.6. */
+ * is not finite or above Mach 0.6, or when a free disc has left the box. */
 bool stage_motion(const struct contacts *contacts, struct exchange *exchange, struct discs *discs, int64_t step,
                   struct team *team);
 
