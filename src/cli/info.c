@@ -1,3 +1,4 @@
+#include "cli/advice.h"
 #include "cli/commands.h"
 #include "cli/options.h"
 
@@ -202,6 +203,7 @@ static int print_case(const struct scene *scene)
   print_speeds(scene);
   if (plan.exchange) print_discs(scene);
   print_contacts(scene, &plan);
+  print_advice(scene);
   char binding[THREADS_TEXT];
   threads_binding(binding);
   printf("run          %" PRId64 " steps, %d threads (%s), kernel %s\n", scene->run.steps,

@@ -1,0 +1,96 @@
+#include "cli/advice.h"
+
+#include "sim/plan.h"
+
+#include <math.h>
+#include <stdio.h>
+
+/* Maps "shear layer": a ghost mode that s_q hardly damps, with e relaxed at another rate than the stress. */
+static void advise_rates(const struct scene *scene)
+{
+  const struct rates *rates = &scene->fluid.rates;
+  if (scene->fluid.collision == COLLISION_MRT && rates->q < 0.25 && fabs(rates->e - rates->nu) > 0.1)
+    printf("  note: s_q %.3g beside s_e %.3g diverges first of all choices at small viscosity; collision: trt has the "
+           "same "
+           "magic parameter and goes farther, the rates 1.4 and 1.2 farthest where there are discs (bench/README.md, "
+           "stability)\n",
+           rates->q, rates->e);
+  else if (scene->fluid.viscosity < 0.001)
+    printf("  note: viscosity below 0.001; no collision operator is reliable there above Mach 0.2 (bench/README.md, "
+           "stability)\n");
+}
+
+/* Map "density of a settling disc". */
+static void advise_solve(const struct scene *scene)
+{
+  if (scene->coupling.solve != SOLVE_EXPLICIT_AVERAGED) return;
+  for (size_t i = 0; i < scene->particles.count; i++) {
+    const struct disc_spec *disc = &scene->particles.discs[i];
+    if (disc->motion != DISC_FREE || disc->density > 0.9) continue;
+    printf(
+        "  note: explicit-averaged diverges for discs lighter than the fluid (disc %zu: %g); solve: implicit does not "
+        "(bench/README.md, stability)\n",
+        i, disc->density);
+    return;
+  }
+}
+
+/* Map "fixed disc that spins". */
+static void advise_spin(const struct scene *scene)
+{
+  if (scene->coupling.form != FORM_OWEN) return;
+  for (size_t i = 0; i < scene->particles.count; i++) {
+    const struct disc_spec *disc = &scene->particles.discs[i];
+    if (disc->motion == DISC_FREE || disc->spin == 0) continue;
+    printf("  note: with form: owen the fluid inside disc %zu, which is made to spin, gains until the run diverges (R "
+           "= 10, "
+           "spin 0.004: in 28,700 steps); form: unified does not (bench/README.md, stability)\n",
+           i);
+    return;
+  }
+}
+
+/* Maps "impact": contacts shorter than the sub-steps that the case fixes. */
+static void advise_substeps(const struct scene *scene)
+{
+  if (scene->contact.substeps == 0) return;
+  struct scene freely = *scene;
+  freely.contact.substeps = 0;
+  const int needed = plan_largest_substeps(&freely);
+  if (needed > scene->contact.substeps)
+    printf(
+        "  note: %d sub-steps are fewer than the %d that contacts may need; they can gain energy; substeps: auto does "
+        "not (bench/README.md, stability)\n",
+        scene->contact.substeps, needed);
+}
+
+/* Map "packing": discs held up by the pressure of a fluid that has not so much of it. */
+static void advise_weight(const struct scene *scene)
+{
+  const double pressure = 1.0 / 3;
+  double weight[2] = {0, 0};
+  for (size_t i = 0; i < scene->particles.count; i++) {
+    const struct disc_spec *disc = &scene->particles.discs[i];
+    if (disc->motion != DISC_FREE) continue;
+    const double mass = M_PI * disc->radius * disc->radius * (disc->density - 1);
+    for (int axis = 0; axis < 2; axis++) weight[axis] += mass * scene->particles.gravity[axis];
+  }
+  for (int axis = 0; axis < 2; axis++) {
+    const double part = fabs(weight[axis]) / scene->domain.size[!axis] / pressure;
+    if (!scene_is_closed(scene, axis) || part < 0.2) continue;
+    printf(
+        "  note: the discs weigh %.0f %% of the fluid's pressure on the side below; it rings or diverges: less gravity "
+        "and more steps are better (bench/README.md, stability)\n",
+        100 * part);
+  }
+}
+
+void print_advice(const struct scene *scene)
+{
+  advise_rates(scene);
+  if (scene->particles.count == 0) return;
+  advise_solve(scene);
+  advise_spin(scene);
+  advise_weight(scene);
+  advise_substeps(scene);
+}

@@ -1,0 +1,10 @@
+/* What the maps of `delbm bench stability` (bench/README.md) say about a case: warnings, each with what to do instead. */
+#ifndef DELBM_CLI_ADVICE_H
+#define DELBM_CLI_ADVICE_H
+
+#include "scene/scene.h"
+
+/* Prints nothing where nothing is to be said. */
+void print_advice(const struct scene *scene);
+
+#endif
