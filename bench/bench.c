@@ -13,6 +13,7 @@ const struct bench *bench_at(size_t index)
       {"accuracy", "what error does each choice make, for which time?", bench_accuracy},
       {"drag", "how does the drag of a square array depend on form, rates, viscosity and solid fraction?", bench_drag},
       {"overlap", "how does the overlap area grow with distance, and how does the one by cells differ?", bench_overlap},
+      {"stability", "what stays stable and accurate, and where does it end?", bench_stability},
   };
   return index < sizeof all / sizeof all[0] ? &all[index] : NULL;
 }

@@ -22,8 +22,8 @@ struct bench {
   bench_run *run;
 };
 
-bench_run bench_accuracy, bench_contact, bench_drag, bench_occupation, bench_overlap, bench_run_alone, bench_step,
-    bench_sweep;
+bench_run bench_accuracy, bench_contact, bench_drag, bench_occupation, bench_overlap, bench_run_alone, bench_stability,
+    bench_step, bench_sweep;
 
 /* Prints what is measured on, and puts it into the report as its first member. */
 void bench_describe_machine(const struct bench_report *report);

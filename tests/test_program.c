@@ -183,3 +183,29 @@ Test(program, many_more_threads_than_cores_change_nothing)
                      "out64/particles.csv && grep -q '\"threads\": 64' out64/run.json"),
                0);
 }
+
+/* The benchmark itself fails where a file of one of its runs holds a NaN. */
+Test(program, no_case_of_the_quick_stability_maps_leaves_nan_in_a_file)
+{
+  cr_expect_eq(shell("%s bench stability --quick --json maps.json >out", DELBM), 0);
+  cr_expect_eq(shell("grep -q 'no file holds what is not a number' out && ! grep -qi nan maps.json"), 0);
+}
+
+Test(program, a_damped_contact_gains_no_energy_and_keeps_momentum_at_any_stiffness_of_the_quick_map)
+{
+  cr_expect_eq(shell("%s bench stability --quick >out", DELBM), 0);
+  cr_expect_eq(
+      shell("awk '/^# /{on = /^# impact, damping 0.34, (restitution|momentum)/} on && $2 ~ /[!x]/ && !/^#/' out "
+            "| grep -v sub-steps | grep . ; test $? -eq 1"),
+      0);
+}
+
+Test(program, a_disc_too_heavy_for_its_contacts_ends_the_run_when_it_leaves_the_box)
+{
+  shell_write("c.yaml", "domain: {size: [60, 100]}\nfluid: {viscosity: 0.05}\ncontact: {stiffness: 0}\n"
+                        "particles:\n  discs:\n"
+                        "    - {radius: 3, density: 1000, position: [30, 8], velocity: [0, -0.1]}\n"
+                        "run: {steps: 200}\n");
+  cr_expect_eq(shell("%s run c.yaml --quiet --out o 2>err >line", DELBM), 1);
+  cr_expect_eq(shell("grep -q 'was pushed out of the box' err"), 0);
+}

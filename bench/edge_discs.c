@@ -1,0 +1,231 @@
+/* Single discs at the edge: light and heavy ones, ones smaller than a cell, and ones that are held and spin. */
+#include "edge.h"
+#include "scenes.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static const char *const forms[] = {[FORM_UNIFIED] = "unified", [FORM_OWEN] = "owen"};
+static const char *const solves[] = {[SOLVE_IMPLICIT] = "implicit", [SOLVE_EXPLICIT_AVERAGED] = "averaged"};
+
+/* A disc of R = 5 in a channel, moved by a weight less buoyancy that is the same whatever its density, in one direction
+ * or the other: so is its terminal speed. */
+static struct scene falling(double density, enum coupling_form form, enum coupling_solve solve, double speed)
+{
+  const double net = 2e-4;
+  struct scene scene = scene_box(48, 72, 0.1, SIDES_PERIODIC);
+  scene.domain.side[SIDE_LEFT].type = scene.domain.side[SIDE_RIGHT].type = SIDE_WALL;
+  scene.coupling.form = form;
+  scene.coupling.solve = solve;
+  scene.particles.gravity[1] = -net / fabs(density - 1);
+  scene_add_disc(&scene, 5, density, 24, 36)->velocity[1] = density > 1 ? -speed : speed;
+  return scene;
+}
+
+static bool go_on(struct simulation *simulation, void *context)
+{
+  (void)simulation;
+  (void)context;
+  return true;
+}
+
+/* Mean speed over the last fifth of a run, in which the disc goes through many cells. */
+struct travel {
+  double from, sum;
+  int count;
+};
+
+static bool note_speed(struct simulation *simulation, void *context)
+{
+  struct travel *travel = context;
+  if ((double)simulation_step(simulation) < travel->from) return true;
+  travel->sum += fabs(simulation_discs(simulation)->vy[0]);
+  travel->count++;
+  return true;
+}
+
+static bool terminal_speed(struct edge *edge, struct scene *scene, struct edge_run *run, double *speed,
+                           struct status *status)
+{
+  struct travel travel = {.from = 0.8 * (double)run->steps};
+  run->watch = note_speed;
+  run->context = &travel;
+  const bool ok = edge_run(edge, scene, run, status);
+  *speed = travel.sum / travel.count;
+  scene_clear(scene);
+  return ok;
+}
+
+/* What the reference run of each form reaches, at density 2. */
+static bool reference_speed(struct edge *edge, enum coupling_form form, double *speed, struct status *status)
+{
+  struct scene scene = falling(2, form, SOLVE_IMPLICIT, 0);
+  struct edge_run run = {.steps = edge->report->quick ? 2000 : 40000, .every = 25};
+  return terminal_speed(edge, &scene, &run, speed, status);
+}
+
+static bool map_density(struct edge *edge, struct status *status)
+{
+  static const double densities[] = {0.01, 0.03, 0.1, 0.3, 0.5, 0.8, 0.99, 1.01, 1.2, 2, 5, 10, 100, 1000};
+  struct map map = {.name = "density of a settling disc",
+                    .value = "error of the terminal speed, which density does not change",
+                    .corner = "form, solve/density",
+                    .threshold = 0.02};
+  map_set_columns(&map, densities, sizeof densities / sizeof densities[0]);
+  map_begin(&map, edge->report);
+  for (int k = 0; k < 4; k++) {
+    const enum coupling_form form = k % 2 ? FORM_OWEN : FORM_UNIFIED;
+    const enum coupling_solve solve = k / 2 ? SOLVE_EXPLICIT_AVERAGED : SOLVE_IMPLICIT;
+    struct place row[MAP_COLUMNS];
+    double expected, speed;
+    if (!reference_speed(edge, form, &expected, status)) return false;
+    for (int c = 0; c < map.columns; c++) {
+      struct scene scene = falling(densities[c], form, solve, expected);
+      struct edge_run run = {.steps = edge->report->quick ? 500 : 20000, .every = 25};
+      if (!terminal_speed(edge, &scene, &run, &speed, status)) return false;
+      row[c] = run.diverged ? map_diverged(run.end) : map_judge(&map, fabs(speed / expected - 1), run.end);
+    }
+    char label[MAP_LABEL];
+    snprintf(label, sizeof label, "%s %s", forms[form], solves[solve]);
+    map_row(&map, edge->report, label, row, k == 0);
+  }
+  map_end(edge->report);
+  return true;
+}
+
+/* A fixed disc in a periodic square of 16 cells, off the grid by `offset` cells; K = F/(mu U) of a dilute square array
+ * (Hasimoto 1959), off by less than 0.1 % up to a solid fraction of 0.11. */
+static double dilute_drag(double fraction)
+{
+  return 4 * M_PI / (-0.5 * log(fraction) - 0.738 + fraction - 0.887 * fraction * fraction + 2.038 * pow(fraction, 3));
+}
+
+static bool array_drag(struct edge *edge, double radius, double viscosity, enum coupling_form form, double offset,
+                       double *drag, struct status *status)
+{
+  enum { SIZE = 16, CELLS = SIZE * SIZE };
+  struct scene scene = scene_box(SIZE, SIZE, viscosity, SIDES_PERIODIC);
+  struct simulation *simulation = NULL;
+  double ux[CELLS], mean = 0;
+  scene.coupling.form = form;
+  scene.fluid.force[0] = 1e-6 * viscosity;
+  scene_add_disc(&scene, radius, 1, 8 + offset, 8 + 0.6 * offset)->motion = DISC_FIXED;
+  const int64_t steps = (int64_t)((edge->report->quick ? 0.2 : 2) * CELLS / viscosity);
+  const bool ok = simulation_create(&simulation, &scene, status) && simulation_advance(simulation, steps, status);
+  if (ok) simulation_fields(simulation, NULL, ux, NULL);
+  for (int k = 0; ok && k < CELLS; k++) mean += ux[k] / CELLS;
+  *drag = scene.fluid.force[0] * CELLS / (viscosity * mean);
+  simulation_destroy(simulation);
+  scene_clear(&scene);
+  return ok;
+}
+
+static bool map_radius(struct edge *edge, struct status *status)
+{
+  static const double radii[] = {0.5, 0.6, 0.7, 0.8, 0.9, 1, 1.5, 2, 3};
+  static const double offsets[] = {0, 0.25, 0.5, 0.75};
+  static const double viscosities[] = {0.01, 0.1};
+  struct map map = {.name = "drag of small discs",
+                    .value = "largest error of the drag of a square array over places on the grid",
+                    .corner = "form, viscosity/radius",
+                    .threshold = 0.05};
+  map_set_columns(&map, radii, sizeof radii / sizeof radii[0]);
+  map_begin(&map, edge->report);
+  for (int k = 0; k < 4; k++) {
+    const enum coupling_form form = k % 2 ? FORM_OWEN : FORM_UNIFIED;
+    struct place row[MAP_COLUMNS];
+    for (int c = 0; c < map.columns; c++) {
+      double worst = 0, drag;
+      for (int o = 0; o < 4; o++) {
+        if (!array_drag(edge, radii[c], viscosities[k / 2], form, offsets[o], &drag, status)) return false;
+        worst = fmax(worst, fabs(drag / dilute_drag(M_PI * radii[c] * radii[c] / 256) - 1));
+      }
+      row[c] = map_judge(&map, worst, 0);
+    }
+    char label[MAP_LABEL];
+    snprintf(label, sizeof label, "%s %g", forms[form], viscosities[k / 2]);
+    map_row(&map, edge->report, label, row, k == 0);
+  }
+  map_end(edge->report);
+  return true;
+}
+
+/* A disc of R = 8 that is driven through a periodic box, once along it. Past a cylinder fluid moves at twice its speed
+ * at most, in the frame of either, but for what its wake adds. */
+static bool drive_disc(struct edge *edge, const struct edge_operator *choice, double viscosity, double mach,
+                       struct edge_run *run, struct status *status)
+{
+  const double speed = mach / sqrt(3);
+  const int length = edge->report->quick ? 40 : 160;
+  struct scene scene = scene_box(length, length / 2, viscosity, SIDES_PERIODIC);
+  struct disc_spec *disc = scene_add_disc(&scene, 8, 1, length / 2.0, length / 4.0 + 0.2);
+  disc->motion = DISC_DRIVEN;
+  disc->velocity[0] = speed;
+  scene.fluid.rates = edge_rates(choice, viscosity);
+  *run = (struct edge_run){.steps = (int64_t)(length / speed), .every = 100, .watch = go_on};
+  const bool ok = edge_run(edge, &scene, run, status);
+  scene_clear(&scene);
+  return ok;
+}
+
+static bool map_driven(struct edge *edge, const struct edge_operator *choice, struct status *status)
+{
+  static const double viscosities[] = {1e-4, 3e-4, 1e-3, 2e-3, 5e-3, 0.01, 0.03, 0.1}, machs[] = {0.05, 0.1, 0.2, 0.3};
+  char name[64];
+  snprintf(name, sizeof name, "driven disc, %s", choice->name);
+  struct map map = {
+      .name = name, .value = "fastest fluid over the speed of the disc", .corner = "viscosity/Mach", .threshold = 2.5};
+  map_set_columns(&map, machs, sizeof machs / sizeof machs[0]);
+  map_begin(&map, edge->report);
+  for (size_t v = 0; v < sizeof viscosities / sizeof viscosities[0]; v += edge->report->quick ? 4 : 1) {
+    struct place row[MAP_COLUMNS];
+    char label[MAP_LABEL];
+    for (int c = 0; c < map.columns; c++) {
+      struct edge_run run;
+      if (!drive_disc(edge, choice, viscosities[v], machs[c], &run, status)) return false;
+      row[c] = run.diverged ? map_diverged(run.end) : map_judge(&map, run.last.max_mach / machs[c], run.end);
+    }
+    snprintf(label, sizeof label, "%g", viscosities[v]);
+    map_row(&map, edge->report, label, row, v == 0);
+  }
+  map_end(edge->report);
+  return true;
+}
+
+/* A disc of R = 10 that is held and spins: nothing may move faster than its rim. */
+static bool map_spin(struct edge *edge, struct status *status)
+{
+  static const double spins[] = {0.001, 0.002, 0.004, 0.008, 0.015, 0.03};
+  struct map map = {.name = "fixed disc that spins",
+                    .value = "fastest fluid over the speed of the rim, less 1",
+                    .corner = "form/spin",
+                    .threshold = 0.1};
+  map_set_columns(&map, spins, sizeof spins / sizeof spins[0]);
+  map_begin(&map, edge->report);
+  for (int k = 0; k < 2; k++) {
+    struct place row[MAP_COLUMNS];
+    for (int c = 0; c < map.columns; c++) {
+      struct scene scene = scene_box(60, 60, 0.05, SIDES_PERIODIC);
+      struct disc_spec *disc = scene_add_disc(&scene, 10, 1, 30, 30);
+      struct edge_run run = {.steps = edge->report->quick ? 1000 : 100000, .every = 1000, .watch = go_on};
+      disc->motion = DISC_FIXED;
+      disc->spin = spins[c];
+      scene.coupling.form = k ? FORM_OWEN : FORM_UNIFIED;
+      const bool ok = edge_run(edge, &scene, &run, status);
+      scene_clear(&scene);
+      if (!ok) return false;
+      const double excess = run.last.max_mach / (sqrt(3) * 10 * spins[c]) - 1;
+      row[c] = run.diverged ? map_diverged(run.end) : map_judge(&map, excess, run.end);
+    }
+    map_row(&map, edge->report, forms[k ? FORM_OWEN : FORM_UNIFIED], row, k == 0);
+  }
+  map_end(edge->report);
+  return true;
+}
+
+bool edge_discs(struct edge *edge, struct status *status)
+{
+  for (int k = 0; k < EDGE_OPERATORS; k++)
+    if (!map_driven(edge, &edge_operators[k], status)) return false;
+  return map_density(edge, status) && map_radius(edge, status) && map_spin(edge, status);
+}
