@@ -300,6 +300,20 @@ Test(stability, explicit_coupling_of_a_light_disc_diverges_and_says_so_soon)
   scene_clear(&scene);
 }
 
+Test(stability, fluid_of_negative_density_inside_a_disc_is_called_that)
+{
+  struct scene scene = scene_box(60, 100, 0.05, SIDES_CLOSED);
+  struct simulation *simulation;
+  struct status status;
+  scene.contact.stiffness = 0;
+  scene_add_disc(&scene, 3, 50, 30, 8)->velocity[1] = -0.28;
+  cr_assert(simulation_create(&simulation, &scene, &status), "%s", status.message);
+  cr_assert_not(simulation_advance(simulation, 400, &status));
+  cr_expect(strstr(status.message, "negative density"), "%s", status.message);
+  simulation_destroy(simulation);
+  scene_clear(&scene);
+}
+
 Test(stability, fluid_too_fast_is_found_within_the_interval_of_looks)
 {
   struct scene scene = scene_box(32, 32, 0.05, SIDES_PERIODIC);

@@ -153,6 +153,23 @@ static void solve_explicit(struct exchange *e, const struct discs *d, size_t i, 
   respond(&e->response[i], r);
 }
 
+/* Why A of a disc cannot be inverted. */
+static void say_why(const struct exchange *e, const struct discs *d, size_t i, int64_t step, struct status *status)
+{
+  const double coupled = e->gathered[i].m0;
+  if (coupled >= 0)
+    status_fail(
+        status, DELBM_FAILED,
+        "step %lld: disc %zu at (%g, %g) cannot be coupled: it is too light and too small for the cells it covers "
+        "(mass %g, of the fluid it displaces %g, coupled fluid %g); use a larger radius or density",
+        (long long)step, i, d->x[i], d->y[i], d->mass[i], d->fluid_mass[i], coupled);
+  else
+    status_fail(status, DELBM_FAILED,
+                "diverged at step %lld: the fluid that disc %zu covers at (%g, %g) has a negative density (%g over its "
+                "cells, of which %g is the disc's area)",
+                (long long)step, i, d->x[i], d->y[i], coupled / 2, d->fluid_mass[i]);
+}
+
 bool stage_exchange(struct exchange *e, const struct sweep_constants *constants, const struct occupation *o,
                     const struct discs *d, int64_t step, struct team *team)
 {
@@ -167,11 +184,7 @@ bool stage_exchange(struct exchange *e, const struct sweep_constants *constants,
       solve_explicit(e, d, i, weight);
     } else if (!solve_implicit(e, d, i, weight)) {
       struct status status;
-      status_fail(
-          &status, DELBM_FAILED,
-          "step %lld: disc %zu at (%g, %g) cannot be coupled: it is too light and too small for the cells it covers "
-          "(mass %g, of the fluid it displaces %g, coupled fluid %g); use a larger radius or density",
-          (long long)step, i, d->x[i], d->y[i], d->mass[i], d->fluid_mass[i], e->gathered[i].m0);
+      say_why(e, d, i, step, &status);
       team_fail(team, &status);
     }
   }
