@@ -1,15 +1,27 @@
-/* Result codes. They are also the exit codes of the `delbm` program. */
+/* Results of calls: a code, and a message for a person. The codes are also the exit codes of the `delbm` program. */
 #ifndef DELBM_STATUS_H
 #define DELBM_STATUS_H
+
+/* What a shared library shows of itself. */
+#define DELBM_API __attribute__((visibility("default")))
 
 enum delbm_code {
   DELBM_OK = 0,
   DELBM_FAILED = 1,        /* the run failed: it diverged, or memory ran out */
-  DELBM_USAGE = 2,         /* the command line was not understood */
+  DELBM_USAGE = 2,         /* the command line was not understood, or a call had an argument that it must not have */
   DELBM_INVALID = 3,       /* the case is not valid */
   DELBM_IO = 4,            /* reading or writing a file failed */
   DELBM_INTERRUPTED = 130, /* by SIGINT, after a checkpoint */
   DELBM_TERMINATED = 143   /* by SIGTERM, after a checkpoint */
+};
+
+enum { DELBM_MESSAGE = 4096 };
+
+/* Filled by a call that did not return DELBM_OK. The message is UTF-8 without a final newline; that of an invalid case
+ * has a line for each error found, as many as there is room for. */
+struct delbm_status {
+  enum delbm_code code;
+  char message[DELBM_MESSAGE];
 };
 
 #endif

@@ -303,20 +303,39 @@ static bool read_bytes(const char *file, char **bytes, size_t *size, struct stat
   return read;
 }
 
+static bool read_text(struct draft *draft, const struct yaml_text *text, char *const set[], size_t set_count,
+                      struct status *status)
+{
+  struct tree tree = {0};
+  const bool read = read_draft(draft, &tree, text, set, set_count, status);
+  tree_clear(&tree);
+  return read;
+}
+
 static bool read_file(struct draft *draft, const char *file, char *const set[], size_t set_count, struct status *status)
 {
   char *bytes = NULL;
   size_t size = 0;
-  struct tree tree = {0};
   bool read = read_bytes(file, &bytes, &size, status);
   if (read && size > (size_t)SCENE_FILE_MIB << 20) {
     scene_errors_add(draft->errors, "%s: the file is too large; expected at most %d MiB", file, SCENE_FILE_MIB);
     read = false;
   }
   const struct yaml_text text = {file, true, bytes, size};
-  read = read && read_draft(draft, &tree, &text, set, set_count, status);
-  tree_clear(&tree);
+  read = read && read_text(draft, &text, set, set_count, status);
   free(bytes);
+  return read;
+}
+
+/* What was read becomes the caller's, unless something was wrong with it. */
+static bool conclude(struct scene *scene, struct draft *draft, bool read, const char *origin, struct status *status)
+{
+  const size_t wrong = scene_errors_total(draft->errors);
+  if (wrong > 0) read = status_fail(status, DELBM_INVALID, "%zu error%s in %s", wrong, wrong == 1 ? "" : "s", origin);
+  if (read)
+    *scene = draft->scene;
+  else
+    scene_clear(&draft->scene);
   return read;
 }
 
@@ -328,13 +347,18 @@ bool scene_read(struct scene *scene, const char *path, char *const set[], size_t
   if (!file) return false;
   struct draft draft = {.errors = errors};
   draft.scene.name = name_case(file, status);
-  bool read = draft.scene.name && read_file(&draft, file, set, set_count, status);
-  size_t wrong = scene_errors_total(errors);
-  if (wrong > 0) read = status_fail(status, DELBM_INVALID, "%zu error%s in %s", wrong, wrong == 1 ? "" : "s", file);
-  if (read)
-    *scene = draft.scene;
-  else
-    scene_clear(&draft.scene);
+  const bool read = draft.scene.name && read_file(&draft, file, set, set_count, status);
+  const bool good = conclude(scene, &draft, read, file, status);
   free(file);
-  return read;
+  return good;
+}
+
+bool scene_read_text(struct scene *scene, const struct yaml_text *text, char *const set[], size_t set_count,
+                     struct scene_errors *errors, struct status *status)
+{
+  *scene = (struct scene){0};
+  struct draft draft = {.errors = errors};
+  draft.scene.name = copy_text("case", status);
+  const bool read = draft.scene.name && read_text(&draft, text, set, set_count, status);
+  return conclude(scene, &draft, read, text->origin, status);
 }

@@ -4,6 +4,7 @@
 
 #include "scene/scene.h"
 #include "scene/scene_errors.h"
+#include "scene/scene_yaml.h"
 
 enum { SCENE_FILE_MIB = 64 }; /* largest case file taken */
 
@@ -15,5 +16,9 @@ enum { SCENE_FILE_MIB = 64 }; /* largest case file taken */
  *   - memory runs out (DELBM_FAILED). */
 bool scene_read(struct scene *scene, const char *path, char *const set[], size_t set_count, struct scene_errors *errors,
                 struct status *status);
+
+/* The same for a case in memory, whose name becomes "case". */
+bool scene_read_text(struct scene *scene, const struct yaml_text *text, char *const set[], size_t set_count,
+                     struct scene_errors *errors, struct status *status);
 
 #endif

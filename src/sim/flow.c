@@ -46,7 +46,9 @@ static void set_state(struct flow *f, int x, int y, const struct flow_state *sta
 {
   struct populations *p = &f->populations;
   const double rho = state->density, (*du)[2] = state->gradient, *force = f->constants.force;
-  const double jx = rho * (state->velocity[0] - force[0] / 2), jy = rho * (state->velocity[1] - force[1] / 2);
+  const double *uniform = f->constants.uniform;
+  const double jx = rho * (state->velocity[0] - force[0] / 2) - uniform[0] / 2;
+  const double jy = rho * (state->velocity[1] - force[1] / 2) - uniform[1] / 2;
   const double stress = rho / (3 * f->constants.rates.nu);
   double m[Q], g[Q];
   moments_equilibrium(rho, jx, jy, m);
@@ -95,6 +97,18 @@ void flow_start(struct flow *f, flow_initial *initial, const void *context, cons
       }
     }
   }
+}
+
+void flow_set(struct flow *f, const double *density, const double *ux, const double *uy)
+{
+  const int nx = f->populations.nx;
+  f->populations.parity = 0; /* of the two that in which no cell's slots lie in ghosts, which boundaries fill */
+  for (int y = 0; y < f->populations.ny; y++)
+    for (int x = 0; x < nx; x++) {
+      const size_t at = (size_t)y * (size_t)nx + (size_t)x;
+      const struct flow_state state = {.density = density[at], .velocity = {ux[at], uy[at]}};
+      set_state(f, x, y, &state);
+    }
 }
 
 bool flow_store(struct flow *f, struct store *store, struct status *status)

@@ -30,6 +30,9 @@ void flow_destroy(struct flow *flow);
 void flow_start(struct flow *flow, flow_initial *initial, const void *context, const struct occupation *occupation,
                 const struct discs *discs);
 
+/* Equilibrium at the density and velocity of each cell, arrays of nx * ny, row by row from the bottom. */
+void flow_set(struct flow *flow, const double *density, const double *ux, const double *uy);
+
 /* Saves or restores the fluid and the uniform force of the coming step. */
 bool flow_store(struct flow *flow, struct store *store, struct status *status);
 

@@ -330,11 +330,21 @@ static bool check_places(const struct simulation *s, const struct store *store, 
   return true;
 }
 
-bool simulation_restore(struct simulation *s, struct store *store, struct status *status)
+bool simulation_changed(struct simulation *s, struct status *status)
 {
-  if (!store_state(s, store, status) || !check_places(s, store, status) || !paint(s, status)) return false;
+  if (!paint(s, status)) return false;
   if (s->plan.exchange) stage_first_sums(&s->flow, present(s));
   return true;
+}
+
+bool simulation_restore(struct simulation *s, struct store *store, struct status *status)
+{
+  return store_state(s, store, status) && check_places(s, store, status) && simulation_changed(s, status);
+}
+
+void simulation_set_fluid(struct simulation *s, const double *density, const double *ux, const double *uy)
+{
+  flow_set(&s->flow, density, ux, uy);
 }
 
 const char *simulation_kernel(const struct simulation *s)

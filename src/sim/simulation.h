@@ -41,6 +41,12 @@ int64_t simulation_step(const struct simulation *simulation);
 const struct scene *simulation_scene(const struct simulation *simulation);
 const struct discs *simulation_discs(const struct simulation *simulation);
 
+/* Changes from outside: what stands in the arrays of the discs, and the fluid of all cells, brought to equilibrium at this
+ * density and velocity, arrays as those of simulation_fields. To be called between steps; after all of them, and before
+ * the next step, simulation_changed follows up. It fails for want of memory. */
+void simulation_set_fluid(struct simulation *simulation, const double *density, const double *ux, const double *uy);
+bool simulation_changed(struct simulation *simulation, struct status *status);
+
 /* Who covers what now; NULL in a scene without discs. */
 const struct occupation *simulation_occupation(const struct simulation *simulation);
 

@@ -1,0 +1,65 @@
+#include "api/description.h"
+
+#include <stdio.h>
+
+/* Enumerations are written by name; what is none of them by number, which reading refuses. */
+static void write_name(const char *const names[], unsigned count, unsigned index, FILE *text)
+{
+  if (index < count)
+    fputs(names[index], text);
+  else
+    fprintf(text, "%u", index);
+}
+
+static void write_pair(const char *key, const double pair[2], FILE *text)
+{
+  fprintf(text, "%s: [%.17g, %.17g]", key, pair[0], pair[1]);
+}
+
+static void write_side(const char *name, const struct delbm_side *side, FILE *text)
+{
+  static const char *const types[] = {"wall", "periodic", "inlet", "outlet"};
+  fprintf(text, "  %s: {type: ", name);
+  write_name(types, sizeof types / sizeof types[0], side->type, text);
+  if (side->velocity[0] != 0 || side->velocity[1] != 0) write_pair(", velocity", side->velocity, text);
+  fputs("}\n", text);
+}
+
+static void write_disc(const struct delbm_disc *disc, FILE *text)
+{
+  static const char *const flags[] = {"", ", fixed: true", ", driven: true"};
+  fprintf(text, "    - {radius: %.17g, angle: %.17g, spin: %.17g, ", disc->radius, disc->angle, disc->spin);
+  write_pair("position", disc->position, text);
+  write_pair(", velocity", disc->velocity, text);
+  if (disc->density != 0) fprintf(text, ", density: %.17g", disc->density);
+  if ((unsigned)disc->motion < sizeof flags / sizeof flags[0])
+    fputs(flags[disc->motion], text);
+  else
+    fprintf(text, ", driven: %u", (unsigned)disc->motion);
+  fputs("}\n", text);
+}
+
+static void write_scene(const struct delbm_scene *scene, FILE *text)
+{
+  fprintf(text, "domain:\n  size: [%d, %d]\n", scene->size[0], scene->size[1]);
+  write_side("left", &scene->left, text);
+  write_side("right", &scene->right, text);
+  write_side("bottom", &scene->bottom, text);
+  write_side("top", &scene->top, text);
+  fprintf(text, "fluid:\n  viscosity: %.17g\n", scene->viscosity);
+  write_pair("  force", scene->force, text);
+  fputs("\nparticles:\n", text);
+  write_pair("  gravity", scene->gravity, text);
+  fputs(scene->disc_count > 0 ? "\n  discs:\n" : "\n", text);
+  for (size_t i = 0; i < scene->disc_count; i++) write_disc(&scene->discs[i], text);
+}
+
+char *description_write(const struct delbm_scene *scene, size_t *size, struct status *status)
+{
+  char *text = NULL;
+  FILE *stream = open_memstream(&text, size);
+  if (stream) write_scene(scene, stream);
+  if (stream && fclose(stream) == 0) return text;
+  status_fail(status, DELBM_FAILED, "out of memory: the description of the scene");
+  return NULL;
+}

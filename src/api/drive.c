@@ -1,0 +1,80 @@
+/* Discs driven by callbacks. A callback sets the velocity before the step, which then runs as for any driven disc and
+ * reports what the fluid hands over. The fluid inside takes part in the change of velocity; as for free discs
+ * (exchange.h) the force on the solid has m_f dV added for it. */
+#include "api/handle.h"
+#include "base/memory.h"
+
+static struct drive *find(struct delbm_simulation *s, size_t disc)
+{
+  for (size_t k = 0; k < s->drive_count; k++)
+    if (s->drives[k].disc == disc) return &s->drives[k];
+  return NULL;
+}
+
+static struct drive *add(struct delbm_simulation *s, size_t disc, struct status *status)
+{
+  if (!memory_grow(&s->drives, &s->drive_capacity, s->drive_count + 1, sizeof *s->drives, "the driven discs", status))
+    return NULL;
+  s->drives[s->drive_count] = (struct drive){.disc = disc};
+  return &s->drives[s->drive_count++];
+}
+
+static bool set_drive(struct delbm_simulation *s, size_t disc, delbm_drive_function *function, void *context,
+                      struct status *status)
+{
+  if (!api_has_discs(s, disc, 1, status)) return false;
+  if (s->scene.particles.discs[disc].motion != DISC_DRIVEN)
+    return status_fail(status, DELBM_USAGE, "disc %zu is not a driven one", disc);
+  struct drive *drive = find(s, disc);
+  if (!function) {
+    if (drive) *drive = s->drives[--s->drive_count];
+    return true;
+  }
+  if (!drive && !(drive = add(s, disc, status))) return false;
+  drive->function = function;
+  drive->context = context;
+  return true;
+}
+
+enum delbm_code delbm_drive(struct delbm_simulation *s, size_t disc, delbm_drive_function *function, void *context,
+                            struct delbm_status *out)
+{
+  struct status status;
+  return api_result(set_drive(s, disc, function, context, &status), &status, out);
+}
+
+static bool ask(const struct delbm_simulation *s, struct drive *drive, struct status *status)
+{
+  const struct discs *d = simulation_discs(s->simulation);
+  const size_t i = drive->disc;
+  const struct delbm_disc_state now = api_disc_state(d, i);
+  double velocity[2] = {now.velocity[0], now.velocity[1]}, spin = now.spin;
+  drive->function(drive->context, simulation_step(s->simulation), &now, velocity, &spin);
+  if (!api_allows_motion(s, i, velocity, spin, status)) return false;
+  drive->change[0] = velocity[0] - now.velocity[0];
+  drive->change[1] = velocity[1] - now.velocity[1];
+  drive->change[2] = spin - now.spin;
+  d->vx[i] = velocity[0];
+  d->vy[i] = velocity[1];
+  d->omega[i] = spin;
+  return true;
+}
+
+bool api_drive_begin(struct delbm_simulation *s, struct status *status)
+{
+  for (size_t k = 0; k < s->drive_count; k++)
+    if (!ask(s, &s->drives[k], status)) return false;
+  return true;
+}
+
+void api_drive_end(struct delbm_simulation *s)
+{
+  const struct discs *d = simulation_discs(s->simulation);
+  if (s->scene.coupling.solve != SOLVE_IMPLICIT) return;
+  for (size_t k = 0; k < s->drive_count; k++) {
+    const struct drive *drive = &s->drives[k];
+    d->fx[drive->disc] += d->fluid_mass[drive->disc] * drive->change[0];
+    d->fy[drive->disc] += d->fluid_mass[drive->disc] * drive->change[1];
+    d->torque[drive->disc] += d->fluid_inertia[drive->disc] * drive->change[2];
+  }
+}

@@ -1,0 +1,62 @@
+#include "api/handle.h"
+#include "solid/occupation.h"
+
+#include <math.h>
+
+/* Sums the owners' shares of each cell's weight, from which its fraction follows. */
+static void read_occupation(const struct delbm_simulation *s, double *values)
+{
+  const struct occupation *o = simulation_occupation(s->simulation);
+  const int nx = s->scene.domain.size[0], ny = s->scene.domain.size[1];
+  for (int y = 0; y < ny; y++) {
+    double *row = values + (size_t)y * (size_t)nx;
+    size_t count = 0;
+    const struct run *runs = o ? occupation_row(o, y, &count) : NULL;
+    for (int x = 0; x < nx; x++) row[x] = 0;
+    for (size_t r = 0; r < count; r++)
+      for (int k = 0; k < runs[r].n; k++) row[runs[r].x + k] += occupation_band(o, y)->share[runs[r].share + (size_t)k];
+    for (int x = 0; count > 0 && x < nx; x++) row[x] = occupation_fraction(row[x], o->three_nu);
+  }
+}
+
+enum delbm_code delbm_read_field(struct delbm_simulation *s, enum delbm_field field, double *values,
+                                 struct delbm_status *out)
+{
+  struct status status;
+  switch (field) {
+  case DELBM_DENSITY:
+    simulation_fields(s->simulation, values, NULL, NULL);
+    return api_result(true, NULL, out);
+  case DELBM_VELOCITY_X:
+    simulation_fields(s->simulation, NULL, values, NULL);
+    return api_result(true, NULL, out);
+  case DELBM_VELOCITY_Y:
+    simulation_fields(s->simulation, NULL, NULL, values);
+    return api_result(true, NULL, out);
+  case DELBM_OCCUPATION:
+    read_occupation(s, values);
+    return api_result(true, NULL, out);
+  }
+  return api_result(status_fail(&status, DELBM_USAGE, "no field %d", (int)field), &status, out);
+}
+
+static bool allows_fluid(const struct delbm_simulation *s, const double *rho, const double *ux, const double *uy,
+                         struct status *status)
+{
+  const double most_speed = 0.3; /* as a case may have it */
+  const int nx = s->scene.domain.size[0];
+  for (int64_t k = 0; k < scene_cells(&s->scene); k++)
+    if (!(rho[k] > 0 && isfinite(rho[k]) && hypot(ux[k], uy[k]) <= most_speed))
+      return status_fail(status, DELBM_USAGE, "cell (%d, %d): density %g, velocity (%g, %g)", (int)(k % nx),
+                         (int)(k / nx), rho[k], ux[k], uy[k]);
+  return true;
+}
+
+enum delbm_code delbm_write_fluid(struct delbm_simulation *s, const double *density, const double *velocity_x,
+                                  const double *velocity_y, struct delbm_status *out)
+{
+  struct status status;
+  if (!allows_fluid(s, density, velocity_x, velocity_y, &status)) return api_result(false, &status, out);
+  simulation_set_fluid(s->simulation, density, velocity_x, velocity_y);
+  return api_result(simulation_changed(s->simulation, &status), &status, out);
+}

@@ -1,0 +1,348 @@
+/* The public library: from C code as a user would write it, and from outside as it is installed. */
+#include "shell.h"
+
+#include "delbm/delbm.h"
+
+#include <math.h>
+
+TestSuite(api, .timeout = 100);
+TestSuite(installed, .init = shell_enter, .fini = shell_leave, .timeout = 170);
+
+static const char *const crowd =
+    "domain: {size: [120, 100], left: periodic, right: periodic}\n"
+    "fluid: {viscosity: 0.03, force: [1e-5, 0]}\n"
+    "particles:\n"
+    "  density: 1.3\n"
+    "  gravity: [0, -4e-4]\n"
+    "  discs:\n"
+    "    - {radius: 6, position: [30, 80], driven: true, velocity: [0.01, 0], spin: 0.002}\n"
+    "    - {radius: 7, position: [90, 20], fixed: true}\n"
+    "  fill: {pattern: jittered-grid, spacing: 20, radius: 5, jitter: 1, seed: 5, "
+    "region: [20, 30, 110, 70]}\n";
+
+enum { MOST_DISCS = 32 };
+
+static struct delbm_simulation *opened(const char *text)
+{
+  struct delbm_simulation *simulation;
+  struct delbm_status status;
+  cr_assert_eq(delbm_open_text(&simulation, text, NULL, 0, &status), DELBM_OK, "%s", status.message);
+  return simulation;
+}
+
+static void step(struct delbm_simulation *simulation, int64_t steps)
+{
+  struct delbm_status status;
+  cr_assert_eq(delbm_step(simulation, steps, &status), DELBM_OK, "%s", status.message);
+}
+
+/* All discs; returns their number. */
+static size_t discs_of(const struct delbm_simulation *simulation, struct delbm_disc_state states[MOST_DISCS])
+{
+  const size_t count = delbm_disc_count(simulation);
+  cr_assert_leq(count, MOST_DISCS);
+  cr_assert_eq(delbm_read_discs(simulation, 0, count, states, NULL), DELBM_OK);
+  return count;
+}
+
+/* Both have the same discs, bit for bit. */
+static void expect_same(const char *what, const struct delbm_simulation *a, const struct delbm_simulation *b)
+{
+  struct delbm_disc_state of_a[MOST_DISCS], of_b[MOST_DISCS];
+  const size_t count = discs_of(a, of_a);
+  cr_assert_eq(discs_of(b, of_b), count);
+  cr_expect_eq(delbm_time(a), delbm_time(b));
+  cr_expect_eq(memcmp(of_a, of_b, count * sizeof of_a[0]), 0, "%s", what);
+}
+
+static double *field(struct delbm_simulation *simulation, enum delbm_field which)
+{
+  double *values = calloc((size_t)delbm_size(simulation, 0) * (size_t)delbm_size(simulation, 1), sizeof *values);
+  cr_assert_eq(delbm_read_field(simulation, which, values, NULL), DELBM_OK);
+  return values;
+}
+
+Test(api, steps_in_parts_are_those_of_delbm_run)
+{
+  shell_enter();
+  shell_write("case.yaml", crowd);
+  cr_assert_eq(shell("$DELBM run case.yaml --quiet --out out --set run.steps=150 --set output.every=150 >log"), 0);
+  struct delbm_simulation *simulation = opened(crowd);
+  for (int part = 1; part <= 5; part++) step(simulation, 10 * part);
+  struct delbm_disc_state s[MOST_DISCS];
+  const size_t count = discs_of(simulation, s);
+  FILE *file = fopen("expected", "w");
+  for (size_t i = 0; i < count; i++)
+    fprintf(file, "150,%zu,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g\n", i,
+            s[i].position[0], s[i].position[1], s[i].velocity[0], s[i].velocity[1], s[i].spin, s[i].angle,
+            s[i].force[0], s[i].force[1], s[i].torque, s[i].contact_force[0], s[i].contact_force[1],
+            s[i].contact_torque);
+  fclose(file);
+  cr_expect_eq(shell("sed 's/,-0$/,0/; s/,-0,/,0,/g' expected >e; sed 's/,-0$/,0/; s/,-0,/,0,/g' out/particles.csv | "
+                     "grep ^150 | cmp - e"),
+               0);
+  delbm_close(simulation);
+  shell_leave();
+}
+
+Test(api, a_scene_in_structs_is_that_of_its_text)
+{
+  const struct delbm_disc discs[] = {{.radius = 6, .density = 1.2, .position = {30, 60}, .angle = 0.5},
+                                     {.radius = 8, .position = {70, 40}, .spin = 0.003, .motion = DELBM_FIXED}};
+  const struct delbm_scene scene = {.size = {100, 90},
+                                    .left = {DELBM_INLET, {0.02, 0}},
+                                    .right = {DELBM_OUTLET, {0, 0}},
+                                    .viscosity = 0.04,
+                                    .gravity = {0, -1e-4},
+                                    .discs = discs,
+                                    .disc_count = 2};
+  const char *const settings[] = {"coupling.form=unified", "fluid.precision=single"};
+  struct delbm_simulation *a, *b;
+  struct delbm_status status;
+  cr_assert_eq(delbm_open_scene(&a, &scene, settings, 2, &status), DELBM_OK, "%s", status.message);
+  b = opened("domain: {size: [100, 90], left: {type: inlet, velocity: [0.02, 0]}, right: outlet}\n"
+             "fluid: {viscosity: 0.04, precision: single}\n"
+             "coupling: {form: unified}\n"
+             "particles:\n"
+             "  gravity: [0, -1e-4]\n"
+             "  discs:\n"
+             "    - {radius: 6, density: 1.2, position: [30, 60], angle: 0.5}\n"
+             "    - {radius: 8, position: [70, 40], spin: 0.003, fixed: true}\n");
+  step(a, 80);
+  step(b, 80);
+  expect_same("structs and text", a, b);
+  delbm_close(a);
+  delbm_close(b);
+}
+
+Test(api, discs_written_back_as_they_were_change_nothing)
+{
+  struct delbm_simulation *a = opened(crowd), *b = opened(crowd);
+  struct delbm_disc_state states[MOST_DISCS];
+  for (int part = 0; part < 3; part++) {
+    step(a, 31);
+    step(b, 31);
+    const size_t count = discs_of(b, states);
+    cr_assert_eq(delbm_write_discs(b, 0, count, states, NULL), DELBM_OK);
+    expect_same("written back", a, b);
+  }
+  delbm_close(a);
+  delbm_close(b);
+}
+
+Test(api, discs_go_where_they_are_put)
+{
+  struct delbm_simulation *s = opened(crowd);
+  struct delbm_disc_state states[MOST_DISCS];
+  step(s, 3);
+  discs_of(s, states);
+  states[1].position[0] = 60.25;
+  states[1].position[1] = 13;
+  cr_assert_eq(delbm_write_discs(s, 1, 1, &states[1], NULL), DELBM_OK);
+  double *eps = field(s, DELBM_OCCUPATION), area = 0;
+  for (int y = 5; y < 21; y++)
+    for (int x = 50; x < 70; x++) area += eps[y * 120 + x];
+  cr_expect_float_eq(area, M_PI * 49, 1e-9, "the fixed disc covers its new place");
+  cr_expect_eq(eps[20 * 120 + 90], 0, "and not its old one");
+  step(s, 3);
+  free(eps);
+  delbm_close(s);
+}
+
+Test(api, a_disc_that_is_wrong_leaves_all_as_it_was)
+{
+  struct delbm_simulation *s = opened(crowd);
+  struct delbm_disc_state was[MOST_DISCS], wrong[MOST_DISCS], now[MOST_DISCS];
+  struct delbm_status status;
+  const size_t count = discs_of(s, was);
+  const double values[] = {NAN, INFINITY, -1, 1e9};
+  for (size_t k = 0; k < sizeof values / sizeof values[0]; k++) {
+    memcpy(wrong, was, sizeof was);
+    wrong[0].velocity[0] = 0;
+    wrong[count - 1].position[0] = values[k];
+    cr_expect_eq(delbm_write_discs(s, 0, count, wrong, &status), DELBM_USAGE);
+    cr_expect(strstr(status.message, "outside of the box of 120 x 100"), "%s", status.message);
+  }
+  wrong[1].velocity[0] = 0.01;
+  cr_expect_eq(delbm_write_discs(s, 1, 1, &wrong[1], &status), DELBM_USAGE);
+  cr_expect(strstr(status.message, "disc 1: velocity (0.01, 0) of a fixed disc"), "%s", status.message);
+  cr_expect_eq(delbm_write_discs(s, count, 1, was, NULL), DELBM_USAGE);
+  cr_expect_eq(delbm_read_discs(s, 1, SIZE_MAX, now, NULL), DELBM_USAGE);
+  discs_of(s, now);
+  cr_expect_eq(memcmp(was, now, count * sizeof was[0]), 0);
+  delbm_close(s);
+}
+
+Test(api, fluid_reads_back_as_it_was_written)
+{
+  struct delbm_simulation *s = opened(crowd);
+  const size_t nx = 120, cells = nx * 100;
+  double *rho = calloc(3 * cells, sizeof *rho), *ux = rho + cells, *uy = ux + cells;
+  for (size_t k = 0; k < cells; k++) {
+    rho[k] = 1 + 0.01 * sin(0.3 * (double)(k % nx));
+    ux[k] = 0.02 * cos(0.2 * (double)(k / nx));
+    uy[k] = -0.01 * sin(0.1 * (double)k);
+  }
+  for (int steps = 0; steps < 2; steps++) {
+    cr_assert_eq(delbm_write_fluid(s, rho, ux, uy, NULL), DELBM_OK);
+    double *read[] = {field(s, DELBM_DENSITY), field(s, DELBM_VELOCITY_X), field(s, DELBM_VELOCITY_Y)};
+    double worst = 0;
+    for (size_t k = 0; k < cells; k++)
+      worst = fmax(fmax(worst, fabs(read[0][k] - rho[k])), fmax(fabs(read[1][k] - ux[k]), fabs(read[2][k] - uy[k])));
+    cr_expect_lt(worst, 1e-14, "after %d steps: %g", steps, worst);
+    for (int k = 0; k < 3; k++) free(read[k]);
+    step(s, 1);
+  }
+  rho[17] = 0;
+  cr_expect_eq(delbm_write_fluid(s, rho, ux, uy, NULL), DELBM_USAGE);
+  free(rho);
+  delbm_close(s);
+}
+
+/* A callback that counts its calls and keeps the velocity, or lets it grow. */
+struct driver {
+  int calls;
+  double faster;
+};
+
+static void keep_on(void *context, int64_t at, const struct delbm_disc_state *now, double velocity[2], double *spin)
+{
+  struct driver *driver = context;
+  cr_expect_eq(at, driver->calls);
+  cr_expect(now->velocity[0] == velocity[0] && now->spin == *spin);
+  driver->calls++;
+  velocity[0] += driver->faster;
+}
+
+Test(api, a_callback_that_keeps_the_velocity_changes_nothing)
+{
+  struct delbm_simulation *a = opened(crowd), *b = opened(crowd);
+  struct driver driver = {0, 0};
+  struct delbm_status status;
+  cr_assert_eq(delbm_drive(b, 0, keep_on, &driver, &status), DELBM_OK, "%s", status.message);
+  step(a, 60);
+  step(b, 60);
+  expect_same("driven", a, b);
+  cr_expect_eq(driver.calls, 60);
+  cr_assert_eq(delbm_drive(b, 0, NULL, NULL, NULL), DELBM_OK);
+  step(b, 1);
+  cr_expect_eq(driver.calls, 60, "it is asked no more");
+  cr_expect_eq(delbm_drive(b, 1, keep_on, &driver, &status), DELBM_USAGE);
+  cr_expect(strstr(status.message, "disc 1 is not a driven one"), "%s", status.message);
+  delbm_close(a);
+  delbm_close(b);
+}
+
+Test(api, a_callback_that_goes_too_far_is_refused)
+{
+  struct delbm_simulation *s = opened(crowd);
+  struct driver driver = {0, NAN};
+  struct delbm_status status;
+  cr_assert_eq(delbm_drive(s, 0, keep_on, &driver, NULL), DELBM_OK);
+  cr_expect_eq(delbm_step(s, 1, &status), DELBM_USAGE);
+  cr_expect(strstr(status.message, "disc 0: velocity (nan, 0)"), "%s", status.message);
+  cr_expect_eq(delbm_time(s), 0);
+  delbm_close(s);
+}
+
+Test(api, a_checkpoint_gives_back_the_bits_and_another_case_refuses_it)
+{
+  shell_enter();
+  struct delbm_simulation *a = opened(crowd), *b = opened(crowd), *other;
+  struct delbm_status status;
+  step(a, 77);
+  cr_assert_eq(delbm_save(a, "state", &status), DELBM_OK, "%s", status.message);
+  cr_assert_eq(delbm_load(b, "state", &status), DELBM_OK, "%s", status.message);
+  expect_same("loaded", a, b);
+  step(a, 40);
+  step(b, 40);
+  expect_same("gone on", a, b);
+  other = opened("domain: {size: [120, 100]}\nfluid: {viscosity: 0.03}\n");
+  cr_expect_eq(delbm_load(other, "state", &status), DELBM_IO);
+  cr_expect(strstr(status.message, "of another case"), "%s", status.message);
+  cr_expect_eq(delbm_load(other, "nowhere", &status), DELBM_IO);
+  step(other, 2);
+  cr_expect_eq(delbm_save(other, "no/such/folder", &status), DELBM_IO);
+  delbm_close(a);
+  delbm_close(b);
+  delbm_close(other);
+  shell_leave();
+}
+
+Test(api, what_is_wrong_is_told_by_key_and_place)
+{
+  struct delbm_simulation *s;
+  struct delbm_status status;
+  cr_expect_eq(delbm_open_text(&s, "domain: {size: [0, 4]}\nfluid: {viscosity: -1}\n", NULL, 0, &status),
+               DELBM_INVALID);
+  cr_expect_null(s);
+  cr_expect(strstr(status.message, "2 errors in case\n") && strstr(status.message, "case:2:20: fluid.viscosity"), "%s",
+            status.message);
+  struct delbm_scene scene = {.size = {20, 20}, .viscosity = NAN};
+  cr_expect_eq(delbm_open_scene(&s, &scene, NULL, 0, &status), DELBM_INVALID);
+  cr_expect(strstr(status.message, "scene: fluid.viscosity: got nan"), "%s", status.message);
+  scene.viscosity = 0.1;
+  scene.top.type = (enum delbm_side_type)77;
+  cr_expect_eq(delbm_open_scene(&s, &scene, NULL, 0, &status), DELBM_INVALID);
+  cr_expect(strstr(status.message, "domain.top.type: got 77; expected wall, periodic"), "%s", status.message);
+  const char *const settings[] = {"fluid.viscosity"};
+  cr_expect_eq(delbm_open_scene(&s, &scene, settings, 1, &status), DELBM_USAGE);
+  cr_expect_eq(delbm_open_file(&s, "nowhere.yaml", NULL, 0, &status), DELBM_IO);
+  cr_expect_null(s);
+  delbm_close(NULL);
+}
+
+Test(installed, headers_stand_alone_in_c_and_in_cpp)
+{
+  cr_expect_eq(shell("for h in %s/*.h; do echo \"#include <delbm/${h##*/}>\"; done >all.h; "
+                     "test $(wc -l <all.h) = 3",
+                     INCLUDE_DIR "/delbm"),
+               0);
+  cr_expect_eq(
+      shell("while read line; do echo \"$line\" >one.c; cc -std=c17 -Wall -Wextra -Wpedantic -Wstrict-prototypes "
+            "-Werror -I%s -c one.c -o one.o || exit 1; done <all.h",
+            INCLUDE_DIR),
+      0);
+  if (shell("command -v c++ >/dev/null") != 0) cr_skip_test("no C++ compiler");
+  cr_expect_eq(shell("while read line; do echo \"$line\" >one.cc; c++ -std=c++11 -Wall -Wextra -Wpedantic -Werror -I%s "
+                     "-c one.cc -o one.o || exit 1; done <all.h",
+                     INCLUDE_DIR),
+               0);
+}
+
+Test(installed, the_shared_library_shows_its_api_and_never_prints_or_ends_the_program)
+{
+  cr_expect_eq(
+      shell("nm -D --defined-only %s | awk '$3 !~ /^delbm_/ {print; bad = 1} END {exit bad || NR < 10}'", LIBRARY), 0);
+  cr_expect_eq(shell("nm -D -u %s | grep -wE 'exit|_exit|abort|puts|printf|putchar|perror|stdout|stderr'", LIBRARY), 1);
+}
+
+/* The library as `meson install` puts it, found through pkg-config; the example compiled as its first lines say. */
+static void run_example(const char *name)
+{
+  if (shell("command -v meson pkg-config >/dev/null") != 0) cr_skip_test("no meson or no pkg-config");
+  cr_assert_eq(shell("meson install -C %s --no-rebuild --quiet --destdir $PWD/root >log 2>&1 || { cat log; exit 1; }",
+                     BUILD_DIR),
+               0);
+  cr_assert_eq(
+      shell("pc=$(find root -name delbm.pc); export PKG_CONFIG_SYSROOT_DIR=$PWD/root "
+            "PKG_CONFIG_PATH=$PWD/${pc%%/*}; "
+            "cc -std=c17 -Wall -Wextra -Wpedantic -Werror %s/%s.c $(pkg-config --cflags --libs delbm) -lm -o x",
+            EXAMPLES_DIR, name),
+      0);
+  cr_assert_eq(shell("so=$(find root -name libdelbm.so); LD_LIBRARY_PATH=${so%%/*} ./x >out"), 0);
+}
+
+Test(installed, the_example_settle_goes_on_from_its_checkpoint)
+{
+  run_example("settle");
+  cr_expect_eq(shell("grep -q 'taken up from the checkpoint: the same' out && grep -q '157.08 cells' out"), 0);
+}
+
+Test(installed, the_example_oscillate_finds_added_mass_and_drag_of_stokes_within_5_per_cent)
+{
+  run_example("oscillate");
+  cr_expect_eq(shell("awk '/Stokes/ {n++; e = $(NF - 3) / $NF - 1; if (e < -0.05 || e > 0.05) bad = 1} "
+                     "END {exit bad || n != 2}' out"),
+               0);
+}
