@@ -93,7 +93,7 @@ Test(csv, starts_with_the_header_that_scripts_rely_on)
   struct csv *csv;
   size_t length;
   char *path = in_scratch("particles.csv");
-  cr_assert(csv_open(&csv, path, &status), "%s", status.message);
+  cr_assert(csv_open(&csv, path, &(struct units){0}, &status), "%s", status.message);
   cr_assert(csv_close(&csv, &status));
   cr_assert_null(csv);
   cr_assert_str_eq(contents(path, &length),
@@ -119,7 +119,7 @@ Test(csv, numbers_read_back_as_they_were)
   for (int k = 0; k < 12; k++) some.columns[k][1] = awkward[k];
   struct csv *csv;
   char *path = in_scratch("particles.csv");
-  cr_assert(csv_open(&csv, path, &status));
+  cr_assert(csv_open(&csv, path, &(struct units){0}, &status));
   cr_assert(csv_write(csv, INT64_MAX, discs, &status), "%s", status.message);
   cr_assert(csv_close(&csv, &status));
   size_t length;
@@ -140,7 +140,7 @@ Test(csv, what_was_written_is_in_the_file_before_it_is_closed)
   struct csv *csv;
   size_t length;
   char *path = in_scratch("particles.csv");
-  cr_assert(csv_open(&csv, path, &status));
+  cr_assert(csv_open(&csv, path, &(struct units){0}, &status));
   cr_assert(csv_write(csv, 3, some_discs(&some), &status));
   cr_assert_str_eq(strchr(contents(path, &length), '\n'),
                    "\n3,0,0,0,0,0,0,0,0,0,0,0,0,0\n3,1,0,0,0,0,0,0,0,0,0,0,0,0\n");
@@ -155,7 +155,7 @@ Test(csv, a_number_that_is_not_finite_is_refused_with_its_whole_snapshot)
   struct csv *csv;
   size_t length;
   char *path = in_scratch("particles.csv");
-  cr_assert(csv_open(&csv, path, &status));
+  cr_assert(csv_open(&csv, path, &(struct units){0}, &status));
   cr_assert_not(csv_write(csv, 7, discs, &status));
   cr_assert_eq(status.code, DELBM_FAILED);
   cr_assert_str_eq(status.message, "step 7, disc 1: omega is nan");
@@ -169,7 +169,7 @@ Test(csv, an_unwritable_place_is_an_input_output_error)
 {
   struct csv *csv;
   write_file(in_scratch("file"), "");
-  cr_assert_not(csv_open(&csv, in_scratch("file/particles.csv"), &status));
+  cr_assert_not(csv_open(&csv, in_scratch("file/particles.csv"), &(struct units){0}, &status));
   cr_assert_eq(status.code, DELBM_IO);
   cr_assert_not_null(strstr(status.message, "file/particles.csv: Not a directory"), "%s", status.message);
   cr_assert_null(csv);
@@ -178,7 +178,7 @@ Test(csv, an_unwritable_place_is_an_input_output_error)
 Test(csv, a_full_disk_is_an_input_output_error)
 {
   struct csv *csv;
-  cr_assert_not(csv_open(&csv, "/dev/full", &status));
+  cr_assert_not(csv_open(&csv, "/dev/full", &(struct units){0}, &status));
   cr_assert_eq(status.code, DELBM_IO);
   cr_assert_not_null(strstr(status.message, "/dev/full: No space left on device"), "%s", status.message);
 }

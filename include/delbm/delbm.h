@@ -6,7 +6,8 @@
  *
  * Units are those of the lattice: lengths in cells, time in steps, the density of the fluid at rest is 1; so a velocity
  * is in cells/step, a force in rho cells^3/step^2 (per unit depth), a torque in rho cells^4/step^2. Cell (i, j) covers
- * [i, i+1] x [j, j+1], x to the right, y up.
+ * [i, i+1] x [j, j+1], x to the right, y up. A case may be written in physical units (its `units` block); calls are in
+ * lattice units all the same.
  *
  * Errors. A call that can fail returns a code, DELBM_OK if all is well, and then has filled *status, if that is not
  * NULL. The library never ends the program and never prints. After a failed call the simulation is as it was, but for

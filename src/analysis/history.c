@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const header = "step,id,x,y,vx,vy,omega,angle,fx,fy,torque,contact_fx,contact_fy,contact_torque\n";
+static const char *const header = "step,id,x,y,vx,vy,omega,angle,fx,fy,torque,contact_fx,contact_fy,contact_torque";
 
 enum { LINE_LENGTH = 1024 };
 
@@ -17,6 +17,7 @@ struct reader {
   FILE *stream;
   const char *path;
   int64_t line;
+  bool more; /* columns, in SI, which are passed over */
   struct history *history;
   size_t rows;
   size_t step_capacity, value_capacity;
@@ -55,15 +56,18 @@ static bool parse_row(struct reader *r, const char *text, struct status *status)
     if (end == text) return refuse(r, "not a number", status);
   }
   r->rows++;
-  return *end == '\n' || refuse(r, "too many columns", status);
+  return *end == (r->more ? ',' : '\n') || refuse(r, "another number of columns than in the header", status);
 }
 
 static bool read_rows(struct reader *r, struct status *status)
 {
   char text[LINE_LENGTH];
   r->line = 1;
-  if (!fgets(text, sizeof text, r->stream) || strcmp(text, header) != 0)
+  const size_t length = strlen(header);
+  if (!fgets(text, sizeof text, r->stream) || strncmp(text, header, length) != 0 ||
+      (text[length] != '\n' && text[length] != ','))
     return ferror(r->stream) ? file_fail(status, "read", r->path, errno) : refuse(r, "not a table of discs", status);
+  r->more = text[length] == ',';
   while (fgets(text, sizeof text, r->stream)) {
     r->line++;
     if (!strchr(text, '\n')) break; /* the last row of a run that was cut off */

@@ -15,6 +15,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+/* Where a note is due: rules of thumb. */
+static const double least_tau = 0.503, most_mach = 0.3, most_grid_reynolds = 10;
+
 static void print_help(void)
 {
   puts("usage: delbm info CASE [--set key=value]...\n"
@@ -40,6 +43,39 @@ static void print_box(const struct scene *scene)
   printf("\n");
 }
 
+/* A number in the unit that it has on the lattice, in SI. */
+static double in_si(const struct scene *scene, double number, const char *unit)
+{
+  struct unit from;
+  return unit_parse(unit, &scene->units, &from) ? number * (double)from.scale : NAN;
+}
+
+static void print_units(const struct scene *scene)
+{
+  const struct units *units = &scene->units;
+  const int *size = scene->domain.size;
+  if (units->dx == 0) return;
+  printf("units        cell %g m, step %g s: 1 cell/step is %g m/s, 1 cell/step^2 %g m/s^2\n", units->dx, units->dt,
+         in_si(scene, 1, "cells/step"), in_si(scene, 1, "cells/step^2"));
+  printf("             box %g m x %g m, viscosity %g m^2/s, run of %g s", size[0] * units->dx, size[1] * units->dx,
+         in_si(scene, scene->fluid.viscosity, "cells^2/step"), (double)scene->run.steps * units->dt);
+  if (units->density > 0) printf(", fluid of %g kg/m^3", units->density);
+  printf("\n");
+}
+
+/* What to change so that the lattice viscosity becomes `wanted`, the physical one staying as it is. */
+static void advise_viscosity(const struct scene *scene, double wanted)
+{
+  const bool more = wanted > scene->fluid.viscosity;
+  const char *to = more ? ">=" : "<=";
+  const double factor = wanted / scene->fluid.viscosity;
+  printf("fluid.viscosity %s %.3g", to, wanted);
+  if (scene->units.dx > 0)
+    printf(", by units.dt %s %.3g s or units.dx %s %.3g m", to, scene->units.dt * factor,
+           more ? "<=" : ">=", scene->units.dx / sqrt(factor));
+  printf("\n");
+}
+
 static void print_fluid(const struct scene *scene)
 {
   static const char *const collisions[] = {"bgk", "trt", "mrt"};
@@ -51,8 +87,14 @@ static void print_fluid(const struct scene *scene)
   if (scene->fluid.zero_flux)
     printf("zero flux    on: a uniform force cancels the mean momentum%s%s\n", scene_is_closed(scene, 0) ? " in x" : "",
            scene_is_closed(scene, 1) ? " in y" : "");
-  if (tau > 1.5)
-    printf("  note: tau above 1.5; walls and discs lose accuracy: a smaller viscosity with smaller steps is better\n");
+  if (tau > 1.5) {
+    printf("  note: tau above 1.5; walls and discs lose accuracy; better: ");
+    advise_viscosity(scene, (1.5 - 0.5) / 3);
+  }
+  if (tau < least_tau) {
+    printf("  note: tau below %g, close to 1/2: hardly any damping of what goes wrong; better: ", least_tau);
+    advise_viscosity(scene, (least_tau - 0.5) / 3);
+  }
 }
 
 /* Speed at which a disc settles alone in unbounded fluid, from its weight and the drag of a cylinder: C_D = 8 pi/(Re
@@ -100,8 +142,20 @@ static void print_speeds(const struct scene *scene)
   if (length == 0) length = fmin(scene->domain.size[0], scene->domain.size[1]);
   printf("speed        about %.3g cells a step (%s): Mach %.3g, Reynolds number %.3g over %g cells\n", speed, from,
          speed * sqrt(3), speed * length / scene->fluid.viscosity, length);
-  if (speed * sqrt(3) > 0.3)
-    printf("  note: Mach above 0.3; errors grow with its square: smaller velocities or forces are better\n");
+  if (speed * sqrt(3) > most_mach) {
+    printf("  note: Mach above %g; errors grow with its square; better: speeds <= %.3g", most_mach,
+           most_mach / sqrt(3));
+    if (scene->units.dx > 0) printf(", by units.dt <= %.3g s", scene->units.dt * most_mach / (speed * sqrt(3)));
+    printf("\n");
+  }
+  const double grid_reynolds = speed / scene->fluid.viscosity;
+  if (grid_reynolds > most_grid_reynolds) {
+    printf("  note: grid Reynolds number (of one cell) %.3g, above %g: cells too coarse for the flow, which may become "
+           "unstable; better: fluid.viscosity >= %.3g",
+           grid_reynolds, most_grid_reynolds, speed / most_grid_reynolds);
+    if (scene->units.dx > 0) printf(", by units.dx <= %.3g m", scene->units.dx * most_grid_reynolds / grid_reynolds);
+    printf("\n");
+  }
 }
 
 static void print_discs(const struct scene *scene)
@@ -199,6 +253,7 @@ static int print_case(const struct scene *scene)
   tree_show(scene->title, title);
   printf("case         %s%s%s\n", scene->name, *title ? ": " : "", title);
   print_box(scene);
+  print_units(scene);
   print_fluid(scene);
   print_speeds(scene);
   if (plan.exchange) print_discs(scene);

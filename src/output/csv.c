@@ -19,27 +19,29 @@ enum { NUMBER_LENGTH = 25, INTEGER_LENGTH = 21 };
 
 struct column {
   const char *name;
-  size_t member; /* offset of the array in struct discs */
+  size_t member;    /* offset of the array in struct discs */
+  const char *unit; /* of the lattice */
 };
 
 static const struct column columns[] = {
-    {"x", offsetof(struct discs, x)},
-    {"y", offsetof(struct discs, y)},
-    {"vx", offsetof(struct discs, vx)},
-    {"vy", offsetof(struct discs, vy)},
-    {"omega", offsetof(struct discs, omega)},
-    {"angle", offsetof(struct discs, angle)},
-    {"fx", offsetof(struct discs, fx)},
-    {"fy", offsetof(struct discs, fy)},
-    {"torque", offsetof(struct discs, torque)},
-    {"contact_fx", offsetof(struct discs, contact_fx)},
-    {"contact_fy", offsetof(struct discs, contact_fy)},
-    {"contact_torque", offsetof(struct discs, contact_torque)},
+    {"x", offsetof(struct discs, x), "cells"},
+    {"y", offsetof(struct discs, y), "cells"},
+    {"vx", offsetof(struct discs, vx), "cells/step"},
+    {"vy", offsetof(struct discs, vy), "cells/step"},
+    {"omega", offsetof(struct discs, omega), "radians/step"},
+    {"angle", offsetof(struct discs, angle), "radians"},
+    {"fx", offsetof(struct discs, fx), "fluid density*cells^3/step^2"},
+    {"fy", offsetof(struct discs, fy), "fluid density*cells^3/step^2"},
+    {"torque", offsetof(struct discs, torque), "fluid density*cells^4/step^2"},
+    {"contact_fx", offsetof(struct discs, contact_fx), "fluid density*cells^3/step^2"},
+    {"contact_fy", offsetof(struct discs, contact_fy), "fluid density*cells^3/step^2"},
+    {"contact_torque", offsetof(struct discs, contact_torque), "fluid density*cells^4/step^2"},
 };
 
 enum {
   COLUMN_COUNT = sizeof columns / sizeof columns[0],
-  ROW_LENGTH = 2 * INTEGER_LENGTH + COLUMN_COUNT * NUMBER_LENGTH + 1 /* final zero of snprintf */
+  /* with the SI columns and time; final zero of snprintf */
+  ROW_LENGTH = 2 * INTEGER_LENGTH + (2 * COLUMN_COUNT + 1) * NUMBER_LENGTH + 1
 };
 
 struct csv {
@@ -49,6 +51,8 @@ struct csv {
   char *text;    /* the snapshot being put together */
   size_t length; /* of it */
   size_t capacity;
+  double second;              /* of a step; 0: no SI columns */
+  double scale[COLUMN_COUNT]; /* of each column in SI; 0: left out */
 };
 
 static double column_value(const struct column *column, const struct discs *discs, size_t disc)
@@ -84,18 +88,44 @@ static bool reserve_row(struct csv *csv, struct status *status)
   return memory_grow(&csv->text, &csv->capacity, csv->length + ROW_LENGTH, 1, "a snapshot of the discs", status);
 }
 
+/* What each column is in SI. */
+static void set_scales(struct csv *csv, const struct units *units)
+{
+  csv->second = units->dt;
+  for (size_t k = 0; k < COLUMN_COUNT; k++) {
+    struct unit unit;
+    const bool known = unit_parse(columns[k].unit, units, &unit) && (unit.length || unit.time);
+    csv->scale[k] = known && units->dt > 0 ? (double)unit.scale : 0;
+  }
+}
+
+/* ",vx[m/s]" and so on. */
+static size_t put_si_header(const struct csv *csv, char *text, size_t size)
+{
+  size_t length = csv->second > 0 ? (size_t)snprintf(text, size, ",t[s]") : 0;
+  for (size_t k = 0; k < COLUMN_COUNT; k++) {
+    struct unit unit;
+    char si[UNIT_TEXT];
+    if (csv->scale[k] == 0 || !unit_parse(columns[k].unit, &(struct units){0}, &unit)) continue;
+    unit_si_text(&unit, si);
+    length += (size_t)snprintf(text + length, size - length, ",%s[%s]", columns[k].name, si);
+  }
+  return length;
+}
+
 static bool write_header(struct csv *csv, struct status *status)
 {
   if (!reserve_row(csv, status)) return false;
   csv->length = (size_t)snprintf(csv->text, ROW_LENGTH, "step,id");
   for (const struct column *column = columns; column < columns + COLUMN_COUNT; column++)
     csv->length += (size_t)snprintf(csv->text + csv->length, ROW_LENGTH - csv->length, ",%s", column->name);
+  csv->length += put_si_header(csv, csv->text + csv->length, ROW_LENGTH - csv->length);
   csv->text[csv->length++] = '\n';
   return write_text(csv, status);
 }
 
 /* Opens the file with what is in it. */
-static bool open_file(struct csv **csv, const char *path, int flags, struct status *status)
+static bool open_file(struct csv **csv, const char *path, const struct units *units, int flags, struct status *status)
 {
   *csv = memory_allocate(1, sizeof **csv, "the table of discs", status);
   if (!*csv) return false;
@@ -106,6 +136,7 @@ static bool open_file(struct csv **csv, const char *path, int flags, struct stat
     *csv = NULL;
     return false;
   }
+  set_scales(*csv, units);
   (*csv)->path = strdup(path);
   return (*csv)->path || file_fail(status, "open", path, ENOMEM);
 }
@@ -117,9 +148,9 @@ static bool close_unless(bool good, struct csv **csv)
   return good;
 }
 
-bool csv_open(struct csv **csv, const char *path, struct status *status)
+bool csv_open(struct csv **csv, const char *path, const struct units *units, struct status *status)
 {
-  return close_unless(open_file(csv, path, O_CREAT | O_TRUNC, status) && write_header(*csv, status), csv);
+  return close_unless(open_file(csv, path, units, O_CREAT | O_TRUNC, status) && write_header(*csv, status), csv);
 }
 
 /* Cuts the file to a length that it must have. */
@@ -134,9 +165,9 @@ static bool cut_back(struct csv *csv, int64_t length, struct status *status)
   return ftruncate(csv->descriptor, length) == 0 || file_fail(status, "write", csv->path, errno);
 }
 
-bool csv_reopen(struct csv **csv, const char *path, int64_t length, struct status *status)
+bool csv_reopen(struct csv **csv, const char *path, const struct units *units, int64_t length, struct status *status)
 {
-  return close_unless(open_file(csv, path, 0, status) && cut_back(*csv, length, status), csv);
+  return close_unless(open_file(csv, path, units, 0, status) && cut_back(*csv, length, status), csv);
 }
 
 bool csv_sync(struct csv *csv, int64_t *length, struct status *status)
@@ -155,6 +186,19 @@ static size_t format_number(char *text, double value)
   return (size_t)snprintf(text, NUMBER_LENGTH, "%.17g", value);
 }
 
+static char *put_si(const struct csv *csv, int64_t step, const struct discs *discs, size_t disc, char *text)
+{
+  if (csv->second == 0) return text;
+  *text++ = ',';
+  text += format_number(text, (double)step * csv->second);
+  for (size_t k = 0; k < COLUMN_COUNT; k++) {
+    if (csv->scale[k] == 0) continue;
+    *text++ = ',';
+    text += format_number(text, column_value(&columns[k], discs, disc) * csv->scale[k]);
+  }
+  return text;
+}
+
 static bool append_row(struct csv *csv, int64_t step, const struct discs *discs, size_t disc, struct status *status)
 {
   char *text = csv->text + csv->length;
@@ -166,6 +210,7 @@ static bool append_row(struct csv *csv, int64_t step, const struct discs *discs,
     *text++ = ',';
     text += format_number(text, value);
   }
+  text = put_si(csv, step, discs, disc, text);
   *text++ = '\n';
   csv->length = (size_t)(text - csv->text);
   return true;

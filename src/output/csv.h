@@ -1,4 +1,5 @@
-/* particles.csv: one row per disc and snapshot, numbers with 17 digits, so that they read back as they were. */
+/* particles.csv: one row per disc and snapshot, numbers with 17 digits, so that they read back as they were. Columns in SI
+ * units follow on the right where the case says what they are; those of forces only if it gives the fluid's density. */
 #ifndef DELBM_OUTPUT_CSV_H
 #define DELBM_OUTPUT_CSV_H
 
@@ -7,10 +8,10 @@
 struct csv;
 
 /* Starts the file anew with its header. */
-bool csv_open(struct csv **csv, const char *path, struct status *status);
+bool csv_open(struct csv **csv, const char *path, const struct units *units, struct status *status);
 
 /* Opens the file of a run that goes on, cut back to the `length` that it had. Fails if it is shorter than that. */
-bool csv_reopen(struct csv **csv, const char *path, int64_t length, struct status *status);
+bool csv_reopen(struct csv **csv, const char *path, const struct units *units, int64_t length, struct status *status);
 
 /* Length of the file so far, bytes, all forced to the disk. */
 bool csv_sync(struct csv *csv, int64_t *length, struct status *status);

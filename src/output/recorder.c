@@ -124,7 +124,8 @@ static bool prepare_frames(const struct recorder *recorder, struct status *statu
 
 static bool start_files(struct recorder *recorder, struct status *status)
 {
-  return (recorder->rows.every == 0 || csv_open(&recorder->table, recorder->table_path, status)) &&
+  return (recorder->rows.every == 0 ||
+          csv_open(&recorder->table, recorder->table_path, &recorder->scene->units, status)) &&
          (recorder->snapshots.every == 0 ||
           fields_open(&recorder->fields, recorder->scene, recorder->directory, NULL, status)) &&
          prepare_frames(recorder, status);
@@ -230,8 +231,8 @@ static bool choose_checkpoint(const struct recorder *recorder, int *chosen, stru
 static bool reopen_table(struct recorder *recorder, int64_t length, struct status *status)
 {
   if (recorder->rows.every == 0) return true;
-  if (length == 0) return csv_open(&recorder->table, recorder->table_path, status);
-  return csv_reopen(&recorder->table, recorder->table_path, length, status);
+  if (length == 0) return csv_open(&recorder->table, recorder->table_path, &recorder->scene->units, status);
+  return csv_reopen(&recorder->table, recorder->table_path, &recorder->scene->units, length, status);
 }
 
 static bool reopen_fields(struct recorder *recorder, const struct reversible_mark *mark, struct status *status)

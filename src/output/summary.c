@@ -14,14 +14,14 @@ enum figure_kind { FIGURE_TEXT, FIGURE_INTEGER, FIGURE_REAL };
 struct figure {
   const char *name;
   enum figure_kind kind;
-  bool stage;     /* belongs to "stages" of run.json */
-  bool json_only; /* not in the line: may hold spaces */
+  const char *group; /* of run.json that it belongs to; NULL: none */
+  bool json_only;    /* not in the line: may hold spaces */
   const char *text;
   int64_t integer;
   double real;
 };
 
-enum { FIGURES_MAX = 24 + STAGE_COUNT };
+enum { FIGURES_MAX = 27 + STAGE_COUNT };
 
 struct figures {
   size_t count;
@@ -61,6 +61,21 @@ static struct figure *add_real(struct figures *figures, const char *name, double
   return figure;
 }
 
+/* Left out where they are not known. */
+static void add_units(struct figures *figures, const struct units *units)
+{
+  const struct {
+    const char *name;
+    double value;
+  } all[] = {{"dx_m", units->dx}, {"dt_s", units->dt}, {"density_kg_m3", units->density}};
+  for (size_t k = 0; k < sizeof all / sizeof all[0]; k++) {
+    if (all[k].value == 0) continue;
+    struct figure *figure = add_real(figures, all[k].name, all[k].value);
+    figure->group = "units";
+    figure->json_only = true;
+  }
+}
+
 static double mlups(const struct summary *summary)
 {
   const int *size = summary->scene->domain.size;
@@ -84,12 +99,13 @@ static struct figures figures_of(const struct summary *summary)
   add_text(&figures, "plan", report->plan);
   add_text(&figures, "precision", single ? "single" : "double");
   for (int stage = 0; stage < STAGE_COUNT; stage++)
-    add_real(&figures, stage_name((enum stage)stage), report->times.seconds[stage])->stage = true;
+    add_real(&figures, stage_name((enum stage)stage), report->times.seconds[stage])->group = "stages";
   add_real(&figures, "mass_drift", report->mass_drift);
   add_real(&figures, "momentum_drift", report->momentum_drift);
   add_real(&figures, "max_mach", report->max_mach);
   add_integer(&figures, "max_substeps", report->max_substeps);
   add_real(&figures, "peak_rss_mib", memory_peak_mib());
+  add_units(&figures, &summary->scene->units);
   add_text(&figures, "version", DELBM_VERSION)->json_only = true;
   add_text(&figures, "title", summary->scene->title)->json_only = true;
   return figures;
@@ -148,15 +164,15 @@ static bool is_absent(const struct figure *figure)
 
 static void json_figures(const struct figures *figures, FILE *stream)
 {
-  const char *separator = "{\n";
-  bool in_stages = false;
+  const char *separator = "{\n", *group = NULL;
   for (const struct figure *figure = figures->items; figure < figures->items + figures->count; figure++) {
     if (is_absent(figure)) continue;
-    if (in_stages && !figure->stage) fputs("\n  }", stream);
+    const bool changes = figure->group != group && !(group && figure->group && strcmp(group, figure->group) == 0);
+    if (changes && group) fputs("\n  }", stream);
     fputs(separator, stream);
-    if (!in_stages && figure->stage) fputs("  \"stages\": {\n", stream);
-    in_stages = figure->stage;
-    fputs(in_stages ? "    " : "  ", stream);
+    if (changes && figure->group) fprintf(stream, "  \"%s\": {\n", figure->group);
+    group = figure->group;
+    fputs(group ? "    " : "  ", stream);
     json_figure(figure, stream);
     separator = ",\n";
   }

@@ -4,6 +4,7 @@
 #define DELBM_SCENE_SCENE_H
 
 #include "base/status.h"
+#include "lattice/units.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -63,6 +64,8 @@ struct rates {
 struct scene {
   char *title;
   char *name; /* of the case: the folder's or the file's, for the default output directory */
+
+  struct units units; /* what the lattice stands for; dx = 0: not given */
 
   struct {
     int size[2];

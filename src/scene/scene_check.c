@@ -2,6 +2,7 @@
 
 #include "base/memory.h"
 #include "scene/fill_grid.h"
+#include "scene/scene_units.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -336,6 +337,7 @@ static void check_shown(struct draft *draft)
 
 bool scene_check(struct draft *draft, struct status *status)
 {
+  scene_units_check(draft);
   check_cells(draft);
   check_sides(draft);
   check_rates(draft);

@@ -18,11 +18,12 @@ struct draft {
   struct scene_errors *errors;
   struct disc_draft disc; /* defaults of a listed disc */
   struct scene scene;
-  const char *title;  /* these two lie in the tree */
-  const char *kernel; /* NULL: auto */
-  int pattern;        /* the one there is */
-  double magic;       /* 0: not given */
-  double density;     /* particles.density; 0: not given */
+  const char *title;        /* these two lie in the tree */
+  const char *kernel;       /* NULL: auto */
+  int pattern;              /* the one there is */
+  double magic;             /* 0: not given */
+  double lattice_viscosity; /* units.viscosity; 0: not given */
+  double density;           /* particles.density; 0: not given */
 };
 
 /* True if the case gives the key (with any value). */

@@ -6,6 +6,7 @@
 #include "scene/scene_draft.h"
 #include "scene/scene_keys.h"
 #include "scene/scene_override.h"
+#include "scene/scene_units.h"
 #include "scene/scene_value.h"
 #include "scene/scene_yaml.h"
 
@@ -86,9 +87,13 @@ static bool refuse_missing(const struct draft *draft, const struct place *place,
 static bool read_key(const struct draft *draft, const struct key *key, const struct path *path, struct tree_node *node,
                      void *owner)
 {
-  if (value_read(key, node, owner)) return true;
+  if (value_read(key, node, &draft->scene.units, owner)) return true;
+  if (draft_gives(draft, "units") && value_lacks_units(key, node, &draft->scene.units)) {
+    node->refused = true; /* what is wrong is the units block, and is told there */
+    return false;
+  }
   char allowed[VALUE_TEXT];
-  value_describe(key, allowed);
+  value_expect(key, node, &draft->scene.units, allowed);
   return refuse(draft, path, node, allowed);
 }
 
@@ -189,7 +194,7 @@ static bool read_defaults(struct draft *draft, struct tree *tree, struct status 
     const struct tree_node *node = yaml_read(tree, &text, draft->errors, status);
     if (!node) return false;
     bool of_disc = key_within(keys[i].path, "particles.discs[]") != NULL;
-    value_read(&keys[i], node, of_disc ? (void *)&draft->disc : (void *)draft);
+    value_read(&keys[i], node, &draft->scene.units, of_disc ? (void *)&draft->disc : (void *)draft);
   }
   return true;
 }
@@ -246,6 +251,7 @@ static bool read_draft(struct draft *draft, struct tree *tree, const struct yaml
   if (!read_tree(draft, tree, text, set, set_count, status) || !read_defaults(draft, tree, status) ||
       !prepare_particles(draft, status))
     return false;
+  scene_units_read(draft);
   read_section(draft, &root, draft->root);
   return scene_check(draft, status) && scene_errors_total(draft->errors) == 0 && finish(draft, status);
 }

@@ -56,10 +56,12 @@ static bool in_range(const struct range *range, double x)
   return above && below;
 }
 
-/* A decimal number as YAML's core schema writes it, but neither hexadecimal nor infinite, and nothing after it. */
-static bool is_decimal(const char *text)
+/* The end of a decimal number as YAML's core schema writes it, but neither hexadecimal nor infinite; NULL if the text
+ * does not begin with one. */
+static const char *decimal_end(const char *text)
 {
   const char *at = text + (*text == '+' || *text == '-');
+  if (at[0] == '0' && (at[1] == 'x' || at[1] == 'X')) return NULL;
   size_t digits = strspn(at, "0123456789");
   at += digits;
   if (*at == '.') {
@@ -67,14 +69,14 @@ static bool is_decimal(const char *text)
     digits += fraction;
     at += 1 + fraction;
   }
-  if (digits == 0) return false;
+  if (digits == 0) return NULL;
   if (*at == 'e' || *at == 'E') {
     at += 1 + (at[1] == '+' || at[1] == '-');
     size_t exponent = strspn(at, "0123456789");
-    if (exponent == 0) return false;
+    if (exponent == 0) return NULL;
     at += exponent;
   }
-  return *at == '\0';
+  return at;
 }
 
 /* True if a decimal number, as written, has no fraction: its last digit other than 0 is not behind the point. */
@@ -91,25 +93,73 @@ static bool is_whole(const char *text)
   return true;
 }
 
-static bool read_number(const struct tree_node *node, bool whole, double *number)
+/* What is wrong with a number. */
+enum fault {
+  FAULT_NONE,
+  FAULT_NUMBER,        /* it is none, or not a whole one */
+  FAULT_UNIT,          /* no such unit */
+  FAULT_DIMENSION,     /* the unit is of something else */
+  FAULT_WITHOUT_UNIT,  /* it needs a unit */
+  FAULT_WITHOUT_UNITS, /* there is no units block that could convert it */
+  FAULT_NOT_WHOLE      /* once converted */
+};
+
+/* A number with a unit, in the key's own. */
+static enum fault convert(const struct key *key, const char *text, const struct units *units, double *number)
 {
-  if (node->kind != TREE_SCALAR || !node->plain || !is_decimal(node->text)) return false;
-  if (whole && !is_whole(node->text)) return false;
-  errno = 0;
-  *number = strtod(node->text, NULL);
-  return errno == 0 && isfinite(*number);
+  struct unit from, to;
+  if (!unit_parse(text, units, &from)) return FAULT_UNIT;
+  if (*key->unit == '\0' || !unit_parse(key->unit, units, &to) || !unit_same_dimension(&from, &to))
+    return FAULT_DIMENSION;
+  if (from.scale == 0 || to.scale == 0) return FAULT_WITHOUT_UNITS;
+  *number = unit_convert(*number, &from, &to);
+  if (!is_integral(key->kind)) return FAULT_NONE;
+  const double whole = round(*number);
+  if (fabs(*number - whole) > 1e-9 * fabs(whole)) return FAULT_NOT_WHOLE;
+  *number = whole;
+  return FAULT_NONE;
 }
 
-static bool read_numbers(const struct key *key, const struct tree_node *node, double *numbers)
+/* True for what says itself what the lattice stands for. */
+static bool needs_unit(const struct key *key)
+{
+  const struct units none = {0};
+  struct unit unit;
+  return *key->unit && unit_parse(key->unit, &none, &unit) && !unit.lattice && (unit.length || unit.time || unit.mass);
+}
+
+static enum fault read_number(const struct key *key, const struct tree_node *node, const struct units *units,
+                              double *number)
+{
+  const char *end = node->kind == TREE_SCALAR && node->plain ? decimal_end(node->text) : NULL;
+  if (!end) return FAULT_NUMBER;
+  errno = 0;
+  *number = strtod(node->text, NULL);
+  if (errno != 0 || !isfinite(*number)) return FAULT_NUMBER;
+  if (*end) return convert(key, end, units, number);
+  if (needs_unit(key)) return FAULT_WITHOUT_UNIT;
+  return is_integral(key->kind) && !is_whole(node->text) ? FAULT_NUMBER : FAULT_NONE;
+}
+
+bool value_quantity(const struct tree_node *node, double *number, struct unit *unit)
+{
+  const struct units none = {0};
+  const char *end = node->kind == TREE_SCALAR && node->plain ? decimal_end(node->text) : NULL;
+  if (!end || *end == '\0') return false;
+  *number = strtod(node->text, NULL);
+  return isfinite(*number) && unit_parse(end, &none, unit) && unit->scale > 0;
+}
+
+static bool read_numbers(const struct key *key, const struct tree_node *node, const struct units *units,
+                         double *numbers)
 {
   size_t count = components(key->kind);
-  bool whole = is_integral(key->kind);
   struct range range;
   parse_range(key->allowed, &range);
-  if (count == 1) return read_number(node, whole, numbers) && in_range(&range, numbers[0]);
+  if (count == 1) return !read_number(key, node, units, numbers) && in_range(&range, numbers[0]);
   if (node->kind != TREE_LIST || node->count != count) return false;
   for (size_t i = 0; i < count; i++) {
-    if (!read_number(node->entries[i].value, whole, &numbers[i])) return false;
+    if (read_number(key, node->entries[i].value, units, &numbers[i])) return false;
     if (key->kind != KEY_VECTOR && !in_range(&range, numbers[i])) return false;
   }
   return key->kind != KEY_VECTOR || in_range(&range, hypot(numbers[0], numbers[1]));
@@ -163,13 +213,13 @@ static bool read_choice(const char *choices, const char *text, unsigned char *fi
   return false;
 }
 
-bool value_read(const struct key *key, const struct tree_node *node, void *owner)
+bool value_read(const struct key *key, const struct tree_node *node, const struct units *units, void *owner)
 {
   unsigned char *field = (unsigned char *)owner + key->offset;
   bool automatic = key_is_automatic(key) && node->kind == TREE_SCALAR && strcmp(node->text, "auto") == 0;
   if (is_numeric(key->kind)) {
     double numbers[MOST_COMPONENTS] = {0};
-    if (!automatic && !read_numbers(key, node, numbers)) return false;
+    if (!automatic && !read_numbers(key, node, units, numbers)) return false;
     store_numbers(key, numbers, field);
     return true;
   }
@@ -217,6 +267,7 @@ static void format_numbers(const struct key *key, const unsigned char *field, ch
     length += (size_t)snprintf(text + length, VALUE_TEXT - length, "%s%s", before, number);
   }
   if (count > 1) snprintf(text + length, VALUE_TEXT - length, "]");
+  if (needs_unit(key)) snprintf(text + length, VALUE_TEXT - length, " %s", key->unit);
   if (key_is_automatic(key) && strcmp(text, "0") == 0) snprintf(text, VALUE_TEXT, "auto");
 }
 
@@ -300,4 +351,69 @@ void value_describe(const struct key *key, char text[VALUE_TEXT])
   say(&phrase, "%s%s", key_is_automatic(key) ? "auto or " : "", nouns[key->kind]);
   if (key->kind == KEY_CHOICE) describe_choices(&phrase, key->allowed);
   if (is_numeric(key->kind)) describe_range(&phrase, key);
+}
+
+/* The first number of the node, or of its list, that has a fault or, if none has, a unit. */
+static enum fault find_fault(const struct key *key, const struct tree_node *node, const struct units *units,
+                             double *number, bool *converted)
+{
+  const size_t count = node->kind == TREE_LIST ? node->count : 1;
+  enum fault fault = FAULT_NONE;
+  *converted = false;
+  for (size_t i = 0; i < count && !fault && !*converted; i++) {
+    const struct tree_node *at = node->kind == TREE_LIST ? node->entries[i].value : node;
+    const char *end = at->kind == TREE_SCALAR && at->plain ? decimal_end(at->text) : NULL;
+    fault = end ? read_number(key, at, units, number) : FAULT_NONE;
+    *converted = end && *end;
+  }
+  return fault;
+}
+
+/* "cells/step or m/s"; a number alone if the key has no such unit. */
+static void say_units(struct phrase *phrase, const struct key *key)
+{
+  const struct units none = {0};
+  struct unit unit;
+  char si[UNIT_TEXT];
+  if (*key->unit == '\0' || !unit_parse(key->unit, &none, &unit)) {
+    say(phrase, "a number without unit");
+    return;
+  }
+  unit_si_text(&unit, si);
+  if (unit.lattice && *si)
+    say(phrase, "a value in %s, as a plain number, or in %s", key->unit, si);
+  else
+    say(phrase, "a value in %s", key->unit);
+}
+
+bool value_lacks_units(const struct key *key, const struct tree_node *node, const struct units *units)
+{
+  double number;
+  bool converted;
+  return is_numeric(key->kind) && (units->dx == 0 || units->dt == 0) &&
+         find_fault(key, node, units, &number, &converted) == FAULT_WITHOUT_UNITS;
+}
+
+void value_expect(const struct key *key, const struct tree_node *node, const struct units *units, char text[VALUE_TEXT])
+{
+  struct phrase phrase = {text, 0};
+  double number = 0;
+  bool converted;
+  const enum fault fault = is_numeric(key->kind) ? find_fault(key, node, units, &number, &converted) : FAULT_NUMBER;
+  if (fault == FAULT_UNIT || fault == FAULT_DIMENSION) {
+    say_units(&phrase, key);
+  } else if (fault == FAULT_WITHOUT_UNITS && units->dx > 0 && units->dt > 0) {
+    say(&phrase, "units.density beside it, the density of the fluid in kg/m^3");
+  } else if (fault == FAULT_WITHOUT_UNITS) {
+    say(&phrase,
+        "a plain number, in %s; with units, a units block must say what a cell and a step are: units: {dx: 0.1 mm, dt: "
+        "0.5 ms}",
+        key->unit);
+  } else {
+    value_describe(key, text);
+    phrase.length = strlen(text);
+    if (fault == FAULT_WITHOUT_UNIT) say(&phrase, " with its unit, such as 1 %s", key->unit);
+    if (fault == FAULT_NOT_WHOLE || (fault == FAULT_NONE && converted))
+      say(&phrase, "; it is %.10g %s", number, key->unit);
+  }
 }

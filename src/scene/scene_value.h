@@ -2,14 +2,19 @@
 #ifndef DELBM_SCENE_SCENE_VALUE_H
 #define DELBM_SCENE_SCENE_VALUE_H
 
+#include "lattice/units.h"
 #include "scene/scene_keys.h"
 #include "scene/scene_tree.h"
 
 enum { VALUE_TEXT = 256 };
 
-/* Reads a node as the key's value into `owner` (struct draft or disc_draft). False, with nothing stored, if it is not
- * what the key allows. A text stays in the tree; `auto` is stored as zero. */
-bool value_read(const struct key *key, const struct tree_node *node, void *owner);
+/* Reads a node as the key's value into `owner` (struct draft or disc_draft). A number with a unit is converted to the
+ * key's own. False, with nothing stored, if it is not what the key allows. A text stays in the tree; `auto` is stored as
+ * zero. */
+bool value_read(const struct key *key, const struct tree_node *node, const struct units *units, void *owner);
+
+/* Reads a number with a physical unit. */
+bool value_quantity(const struct tree_node *node, double *number, struct unit *unit);
 
 /* Writes the value in `owner` as it would be written in a case; texts excepted. Numbers are as short
  * as reads back equal. */
@@ -17,6 +22,13 @@ void value_format(const struct key *key, const void *owner, char text[VALUE_TEXT
 
 /* Says what the key allows: "a number > 0 and <= 10". */
 void value_describe(const struct key *key, char text[VALUE_TEXT]);
+
+/* True if a node was refused only because its units cannot be converted: what a cell and a step are is not known. */
+bool value_lacks_units(const struct key *key, const struct tree_node *node, const struct units *units);
+
+/* Says what is expected in place of a node that value_read has refused, its unit being looked at first. */
+void value_expect(const struct key *key, const struct tree_node *node, const struct units *units,
+                  char text[VALUE_TEXT]);
 
 /* The shortest of 15 to 17 digits that reads back equal. */
 void value_format_number(double number, char text[32]);

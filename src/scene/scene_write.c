@@ -43,6 +43,9 @@ static struct draft draft_from_scene(const struct scene *scene)
 /* True for keys that say nothing in this scene, or what another key already says. */
 static bool is_idle(const struct key *key, const struct scene *scene)
 {
+  if (strcmp(key->path, "units.viscosity") == 0) return true;
+  if (strcmp(key->path, "units.density") == 0) return scene->units.density == 0;
+  if (key_within(key->path, "units")) return scene->units.dx == 0;
   if (strcmp(key->path, "fluid.rates.magic") == 0) return true;
   if (strcmp(key->path, "fluid.magic") == 0) return scene->fluid.collision != COLLISION_TRT;
   if (key_within(key->path, "fluid.rates")) return scene->fluid.collision != COLLISION_MRT;
@@ -198,7 +201,8 @@ static void write_case(const struct scene *scene, bool physics_alone, FILE *file
     }
     size_t top = strcspn(keys[i].path, ".");
     bool opens = i == 0 || strncmp(keys[i].path, keys[i - 1].path, top + 1) != 0;
-    if (keys[i].path[top] == '.' && opens) fprintf(file, "%.*s:\n", (int)top, keys[i].path);
+    const bool none = key_within(keys[i].path, "units") && scene->units.dx == 0;
+    if (keys[i].path[top] == '.' && opens && !none) fprintf(file, "%.*s:\n", (int)top, keys[i].path);
     i += write_rows(&draft, &keys[i], keys + count, file);
   }
 }

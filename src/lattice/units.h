@@ -1,0 +1,36 @@
+/* Units: texts such as "cm^2/s" or "cells/step" as a scale and powers of length, time and mass.
+ *
+ * A case's own units, cell, step and the density of the fluid at rest, stand in one list with metre and second, so that a
+ * conversion is one division, whichever way it goes. Its result is rounded to 15 digits: then 0.2 cm are 20 cells of
+ * 0.1 mm, not 20.000000000000004, and a case in physical units has the bits of one in lattice units. */
+#ifndef DELBM_LATTICE_UNITS_H
+#define DELBM_LATTICE_UNITS_H
+
+#include <stdbool.h>
+
+/* What the lattice stands for, in SI. All zero: nothing; a density of 0 is not known. */
+struct units {
+  double dx;      /* length of a cell, m */
+  double dt;      /* duration of a step, s */
+  double density; /* of the fluid at rest, kg/m^3 */
+};
+
+struct unit {
+  long double scale; /* in SI; 0 where it needs what `units` does not tell */
+  int length, time, mass;
+  bool lattice; /* made of cells, steps and the fluid's density */
+};
+
+/* Reads names joined by * and /, each with a whole power: "kg*m/s^2". False for what is no unit; "" is the number 1. */
+bool unit_parse(const char *text, const struct units *units, struct unit *unit);
+
+bool unit_same_dimension(const struct unit *a, const struct unit *b);
+
+/* The SI unit of this dimension: "m^2/s". */
+enum { UNIT_TEXT = 48 };
+void unit_si_text(const struct unit *unit, char text[UNIT_TEXT]);
+
+/* The number in another unit of the same dimension; both scales known. */
+double unit_convert(double number, const struct unit *from, const struct unit *to);
+
+#endif

@@ -1,0 +1,144 @@
+/* Units: conversions, and that a case in physical units is the same case. */
+#include "shell.h"
+
+#include "lattice/units.h"
+
+#include <math.h>
+
+TestSuite(unit);
+TestSuite(case_in_si, .init = shell_enter, .fini = shell_leave, .timeout = 60);
+
+static const struct units lattice = {.dx = 1e-4, .dt = 5e-4, .density = 1000};
+
+static double converted(double number, const char *from, const char *to)
+{
+  struct unit a, b;
+  cr_assert(unit_parse(from, &lattice, &a), "%s", from);
+  cr_assert(unit_parse(to, &lattice, &b), "%s", to);
+  cr_assert(unit_same_dimension(&a, &b), "%s, %s", from, to);
+  return unit_convert(number, &a, &b);
+}
+
+Test(unit, conversions_give_the_number_that_a_person_would)
+{
+  cr_expect_eq(converted(0.2, "cm", "cells"), 20);
+  cr_expect_eq(converted(1e-6, "m^2/s", "cells^2/step"), 0.05);
+  cr_expect_eq(converted(-9.81, " m/s^2", "cells/step^2"), -0.024525);
+  cr_expect_eq(converted(1010, "kg/m^3", "fluid density"), 1.01);
+  cr_expect_eq(converted(1.01, "g/cm^3", "fluid density"), 1.01);
+  cr_expect_eq(converted(0.3, "rad/s", "radians/step"), 1.5e-4);
+  cr_expect_eq(converted(60, "rpm", "radians/step"), 0.00314159265358979);
+  cr_expect_eq(converted(2, "min", "steps"), 240000);
+  cr_expect_eq(converted(7, "cells*step^-1", "m/s"), 1.4);
+  cr_expect_eq(converted(4e8, "N/m^3", "fluid density*cells/step^2"), 1000);
+}
+
+Test(unit, what_is_no_unit_is_refused)
+{
+  static const char *const wrong[] = {"furlong", "m^", "m^x", "m//s", "m/", "/s", "m s", "m^2^2", "m^99", "(m)", "m*"};
+  struct unit unit;
+  for (size_t k = 0; k < sizeof wrong / sizeof wrong[0]; k++)
+    cr_expect_not(unit_parse(wrong[k], &lattice, &unit), "%s", wrong[k]);
+}
+
+Test(unit, every_conversion_goes_there_and_back_within_15_digits)
+{
+  struct unit si, cells;
+  unit_parse("m/s", &lattice, &si);
+  unit_parse("cells/step", &lattice, &cells);
+  for (int k = 1; k < 1000; k++) {
+    const double speed = 0.0137 * k, back = unit_convert(unit_convert(speed, &si, &cells), &cells, &si);
+    cr_expect_leq(fabs(back / speed - 1), 1e-14, "%d", k);
+  }
+}
+
+static const char *const in_si = "units: {dx: 0.1 mm, viscosity: 0.05, density: 1000 kg/m^3}\n"
+                                 "domain: {size: [1 cm, 20 mm], top: {type: wall, velocity: [2 mm/s, 0]}}\n"
+                                 "fluid: {viscosity: 1e-6 m^2/s}\n"
+                                 "particles:\n"
+                                 "  density: 1.2 g/cm^3\n"
+                                 "  gravity: [0, -0.981 m/s^2]\n"
+                                 "  discs:\n"
+                                 "    - {radius: 0.5 mm, position: [5.01 mm, 18 mm]}\n"
+                                 "    - {radius: 0.5 mm, position: [5 mm, 1.6 cm], spin: 0.2 rad/s}\n"
+                                 "contact: {stiffness: 1e5 N/m^3}\n"
+                                 "run: {steps: 0.2 s}\n"
+                                 "output: {every: 50 ms}\n";
+
+static const char *const in_cells = "domain: {size: [100, 200], top: {type: wall, velocity: [0.01, 0]}}\n"
+                                    "fluid: {viscosity: 0.05}\n"
+                                    "particles:\n"
+                                    "  density: 1.2\n"
+                                    "  gravity: [0, -0.0024525]\n"
+                                    "  discs:\n"
+                                    "    - {radius: 5, position: [50.1, 180]}\n"
+                                    "    - {radius: 5, position: [50, 160], spin: 1e-4}\n"
+                                    "contact: {stiffness: 0.25}\n"
+                                    "run: {steps: 400}\n"
+                                    "output: {every: 100}\n";
+
+Test(case_in_si, has_the_bits_of_the_same_case_in_lattice_units)
+{
+  shell_write("si.yaml", in_si);
+  shell_write("cells.yaml", in_cells);
+  cr_assert_eq(shell("$DELBM run si.yaml --quiet --out si >log && $DELBM run cells.yaml --quiet --out cells >log"), 0);
+  cr_expect_eq(shell("cut -d, -f1-14 si/particles.csv | cmp - cells/particles.csv"), 0);
+  cr_expect_eq(shell("sed '/^units:/,/^coupling:/{/^coupling:/!d}' si/case.yaml | cmp - cells/case.yaml"), 0);
+}
+
+Test(case_in_si, as_run_repeats_the_run_bit_by_bit)
+{
+  shell_write("si.yaml", in_si);
+  cr_assert_eq(shell("$DELBM run si.yaml --quiet --out a --set 'units.viscosity=0.0531' --set 'run.steps=60' "
+                     "--set 'output.every=20' --set 'particles.gravity=[0, -1.1 m/s^2]' >log && "
+                     "$DELBM run a/case.yaml --quiet --out b >log"),
+               0);
+  cr_expect_eq(shell("cmp a/particles.csv b/particles.csv && cmp a/case.yaml b/case.yaml"), 0);
+}
+
+Test(case_in_si, leaves_tables_in_both_units_and_says_what_they_are)
+{
+  shell_write("si.yaml", in_si);
+  cr_assert_eq(shell("$DELBM run si.yaml --quiet --out o >log"), 0);
+  cr_expect_eq(shell("head -1 o/particles.csv | grep -qF 'contact_torque,t[s],x[m],y[m],vx[m/s],vy[m/s],omega[1/s],"
+                     "fx[kg/s^2],'"),
+               0);
+  cr_expect_eq(shell("awk -F, 'function far(a, b) {return (a - b)^2 > 1e-24 * b * b} NR > 1 && (far($15, $1 * 5e-4) || "
+                     "far($16, $3 * 1e-4) || far($19, $6 * 0.2) || far($22, $10 * 1000 * 1e-12 / 25e-8)) {bad = 1} "
+                     "END {exit bad || NR != 11}' o/particles.csv"),
+               0);
+  cr_expect_eq(shell("grep -A3 '\"units\": {' o/run.json | tr -d ' \\n' | "
+                     "grep -qF '\"dx_m\":0.0001,\"dt_s\":0.0005'"),
+               0);
+  cr_expect_eq(shell("$DELBM analyse o >figures && grep -q draft figures"), 0);
+}
+
+Test(case_in_si, resumed_ends_with_the_same_table)
+{
+  shell_write("si.yaml", in_si);
+  cr_assert_eq(shell("$DELBM run si.yaml --quiet --out a >log && "
+                     "$DELBM run si.yaml --quiet --out b --set run.steps=250 --set output.checkpoint.every=250 >log && "
+                     "$DELBM resume b --quiet --steps '0.2 s' >log"),
+               0);
+  cr_expect_eq(shell("grep -v ^250 b/particles.csv | cmp - a/particles.csv"), 0);
+}
+
+Test(case_in_si, info_says_what_a_cell_and_a_step_are_and_what_to_change)
+{
+  shell_write("si.yaml", in_si);
+  cr_expect_eq(shell("$DELBM info si.yaml >i && grep -q 'cell 0.0001 m, step 0.0005 s: 1 cell/step is 0.2 m/s' i && "
+                     "grep -q 'box 0.01 m x 0.02 m, viscosity 1e-06 m^2/s' i && ! grep -q note: i"),
+               0);
+  cr_expect_eq(shell("$DELBM info si.yaml --set 'units={dx: 0.1 mm, dt: 5 us}' --set particles.density=1.2 "
+                     "--set contact.stiffness=0.25 --set particles.discs.1.spin=0 --set run.steps=9 "
+                     "--set output.every=1 >i && "
+                     "grep 'tau below 0.503' i | grep -q 'units.dt >= 1e-05 s or units.dx <= 7.07e-05 m'"),
+               0);
+  cr_expect_eq(shell("$DELBM info si.yaml --set 'particles.gravity=[0, -9.81 m/s^2]' --set particles.density=5 >i && "
+                     "grep 'Mach above 0.3' i | grep -q 'speeds <= 0.173, by units.dt <= '"),
+               0);
+  cr_expect_eq(shell("$DELBM info si.yaml --set 'units.viscosity=0.004' --set 'particles.gravity=[0, -0.0024525]' "
+                     "--set output.every=1 --set run.steps=9 >i && "
+                     "grep 'grid Reynolds number' i | grep -q 'fluid.viscosity >= .*, by units.dx <= '"),
+               0);
+}
