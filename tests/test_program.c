@@ -209,3 +209,90 @@ Test(program, a_disc_too_heavy_for_its_contacts_ends_the_run_when_it_leaves_the_
   cr_expect_eq(shell("%s run c.yaml --quiet --out o 2>err >line", DELBM), 1);
   cr_expect_eq(shell("grep -q 'was pushed out of the box' err"), 0);
 }
+
+/* What bash completes a line to, whose last word is the one being written. */
+static int completes(const char *line, const char *expected)
+{
+  return shell("cat >line.bash <<'end'\n"
+               "eval \"$($DELBM completion bash)\"\n"
+               "complete -p delbm >/dev/null || exit 9\n"
+               "COMP_WORDS=(%s)\n"
+               "COMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n"
+               "_delbm 2>/dev/null\n"
+               "echo \"${COMPREPLY[*]}\" >got\n"
+               "end\n"
+               "bash line.bash && echo '%s' | cmp -s - got || { cat got; exit 1; }",
+               line, expected);
+}
+
+Test(program, bash_completes_commands_options_and_keys)
+{
+  if (shell("command -v bash >/dev/null") != 0) cr_skip_test("no bash");
+  cr_expect_eq(completes("delbm ru", "run"), 0);
+  cr_expect_eq(completes("delbm re", "resume"), 0);
+  cr_expect_eq(completes("delbm --v", "--version"), 0);
+  cr_expect_eq(completes("delbm run --pl", "--plan"), 0);
+  cr_expect_eq(completes("delbm resume out --", "--steps --quiet --help"), 0);
+  cr_expect_eq(completes("delbm run case.yaml --set fluid.vi", "fluid.viscosity="), 0);
+  cr_expect_eq(completes("delbm run --set particles.discs.0.ra", "particles.discs.0.radius="), 0);
+  cr_expect_eq(completes("delbm completion z", "zsh"), 0);
+  cr_expect_eq(completes("delbm run case", ""), 0, "files are the shell's to complete");
+  cr_expect_eq(shell("$DELBM completion fish 2>err; test $? = 2 && grep -q \"no completion for 'fish'\" err"), 0);
+}
+
+Test(program, completion_loads_in_zsh)
+{
+  if (shell("command -v zsh >/dev/null") != 0) cr_skip_test("no zsh");
+  cr_expect_eq(shell("ZDOTDIR=$PWD zsh -fc 'eval \"$($DELBM completion zsh)\" && [[ ${_comps[delbm]} = *_delbm* ]]'"),
+               0);
+}
+
+Test(program, the_manual_page_has_every_command)
+{
+  if (access(BUILD_DIR "/src/cli/delbm.1", R_OK) != 0) cr_skip_test("built without scdoc");
+  cr_expect_eq(shell("$DELBM --help | awk '/^commands/ {on = 1; next} /^$/ {on = 0} on {print $1}' >names && "
+                     "test $(wc -l <names) -gt 5 && "
+                     "while read name; do grep -qi \"^\\.SH $name\" %s || exit 1; done <names",
+                     BUILD_DIR "/src/cli/delbm.1"),
+               0);
+}
+
+/* The case `dkt`, shortened, and the program by its name, as the README's lines expect them. */
+static void prepare_sweep(void)
+{
+  cr_assert_eq(shell("mkdir -p cases/dkt bin && ln -s $DELBM bin/delbm && "
+                     "sed 's/steps: .*/steps: 2/' %s/../cases/dkt/case.yaml >cases/dkt/case.yaml",
+                     TEST_DIR),
+               0);
+}
+
+Test(program, a_sweep_under_gnu_parallel_runs_as_the_readme_says)
+{
+  if (shell("parallel --version 2>/dev/null | grep -q GNU") != 0) cr_skip_test("no GNU parallel");
+  prepare_sweep();
+  cr_assert_eq(shell("grep '^parallel -q delbm' %s/../README.md >sweep && PATH=$PWD/bin:$PATH OMP_NUM_THREADS=1 "
+                     "HOME=$PWD bash sweep >log 2>&1",
+                     TEST_DIR),
+               0);
+  cr_expect_eq(
+      shell("test $(ls -d out/dkt-* | wc -l) = 6 && test $(grep -l '\"status\": \"done\"' out/*/run.json | wc -l) = 6"),
+      0);
+  cr_expect_eq(shell("grep -q 'form: unified' out/dkt-unified-101.0/case.yaml && "
+                     "grep -qF 'position: [101, 720]' out/dkt-unified-101.0/case.yaml"),
+               0);
+}
+
+Test(program, a_sweep_as_a_slurm_array_runs_as_the_readme_says)
+{
+  if (shell("command -v bash >/dev/null") != 0) cr_skip_test("no bash");
+  prepare_sweep();
+  cr_assert_eq(shell("awk '/^#!\\/bin\\/bash/ {on = 1} /^```/ {on = 0} on' %s/../README.md >job && grep -q SBATCH job",
+                     TEST_DIR),
+               0);
+  cr_assert_eq(shell("for task in 0 1 2; do PATH=$PWD/bin:$PATH SLURM_ARRAY_TASK_ID=$task SLURM_CPUS_PER_TASK=1 "
+                     "bash job >log || exit 1; done"),
+               0);
+  cr_expect_eq(shell("test $(grep -l '\"threads\": 1,' out/dkt-100.1/run.json out/dkt-100.5/run.json "
+                     "out/dkt-101.0/run.json | wc -l) = 3"),
+               0);
+}

@@ -6,6 +6,13 @@
 
 #include <stdlib.h>
 
+enum { OPTION_JSON = OPTION_OWN, OPTION_TABLES };
+
+const struct option analyse_options[] = {{"json", required_argument, NULL, OPTION_JSON},
+                                         {"tables", no_argument, NULL, OPTION_TABLES},
+                                         {"help", no_argument, NULL, OPTION_HELP},
+                                         {0}};
+
 static void print_help(void)
 {
   puts("usage: delbm analyse DIR [--json FILE] [--tables]\n"
@@ -58,13 +65,8 @@ static int analyse_scene(const struct scene *scene, const struct request *reques
 
 int command_analyse(int argc, char **argv)
 {
-  enum { OPTION_JSON = OPTION_OWN, OPTION_TABLES };
-  static const struct option known[] = {{"json", required_argument, NULL, OPTION_JSON},
-                                        {"tables", no_argument, NULL, OPTION_TABLES},
-                                        {"help", no_argument, NULL, OPTION_HELP},
-                                        {0}};
   struct request request = {0};
-  for (int option; (option = option_next(argc, argv, known)) != OPTION_END;) {
+  for (int option; (option = option_next(argc, argv, analyse_options)) != OPTION_END;) {
     if (option == OPTION_HELP) print_help();
     if (option == OPTION_HELP) return DELBM_OK;
     if (option == OPTION_BAD) return DELBM_USAGE;

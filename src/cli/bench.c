@@ -8,6 +8,14 @@
 #include <stdio.h>
 #include <string.h>
 
+enum { OPTION_LIST = OPTION_OWN, OPTION_JSON, OPTION_QUICK };
+
+const struct option bench_options[] = {{"list", no_argument, NULL, OPTION_LIST},
+                                       {"json", required_argument, NULL, OPTION_JSON},
+                                       {"quick", no_argument, NULL, OPTION_QUICK},
+                                       {"help", no_argument, NULL, OPTION_HELP},
+                                       {0}};
+
 static void print_help(void)
 {
   puts("usage: delbm bench [NAME]... [--list] [--json FILE] [--quick]\n"
@@ -87,15 +95,9 @@ static int run_benches(char **names, int count, struct bench_report *report, con
 
 int command_bench(int argc, char **argv)
 {
-  enum { OPTION_LIST = OPTION_OWN, OPTION_JSON, OPTION_QUICK };
-  static const struct option known[] = {{"list", no_argument, NULL, OPTION_LIST},
-                                        {"json", required_argument, NULL, OPTION_JSON},
-                                        {"quick", no_argument, NULL, OPTION_QUICK},
-                                        {"help", no_argument, NULL, OPTION_HELP},
-                                        {0}};
   struct bench_report report = {0};
   const char *path = NULL;
-  for (int option; (option = option_next(argc, argv, known)) != OPTION_END;) {
+  for (int option; (option = option_next(argc, argv, bench_options)) != OPTION_END;) {
     switch (option) {
     case OPTION_LIST:
       print_list();

@@ -18,6 +18,11 @@
 /* Where a note is due: rules of thumb. */
 static const double least_tau = 0.503, most_mach = 0.3, most_grid_reynolds = 10;
 
+enum { OPTION_SET = OPTION_OWN };
+
+const struct option info_options[] = {
+    {"set", required_argument, NULL, OPTION_SET}, {"help", no_argument, NULL, OPTION_HELP}, {0}};
+
 static void print_help(void)
 {
   puts("usage: delbm info CASE [--set key=value]...\n"
@@ -271,12 +276,9 @@ static int print_case(const struct scene *scene)
 
 int command_info(int argc, char **argv)
 {
-  enum { OPTION_SET = OPTION_OWN };
-  static const struct option known[] = {
-      {"set", required_argument, NULL, OPTION_SET}, {"help", no_argument, NULL, OPTION_HELP}, {0}};
   struct settings settings = {0};
   struct scene scene = {0};
-  for (int option; (option = option_next(argc, argv, known)) != OPTION_END;) {
+  for (int option; (option = option_next(argc, argv, info_options)) != OPTION_END;) {
     const int code = option == OPTION_SET    ? settings_add(&settings, optarg, argc, argv)
                      : option == OPTION_HELP ? DELBM_OK
                                              : DELBM_USAGE;

@@ -9,23 +9,6 @@
 #include <string.h>
 #include <unistd.h>
 
-struct command {
-  const char *name;
-  int (*run)(int argc, char **argv);
-  const char *purpose;
-};
-
-static const struct command commands[] = {
-    {"run", command_run, "simulate a case"},
-    {"resume", command_resume, "go on with a run from its last checkpoint"},
-    {"info", command_info, "show a case and the plan of its run"},
-    {"analyse", command_analyse, "report what the discs of a finished run did"},
-    {"plot", command_plot, "draw a run by gnuplot"},
-    {"bench", command_bench, "measure speed on this machine"},
-};
-
-enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
-
 static int print_help(void)
 {
   puts("usage: delbm COMMAND [ARGUMENT]...\n"
@@ -34,7 +17,8 @@ static int print_help(void)
        "Flows with discs in them, by the lattice Boltzmann method.\n"
        "\n"
        "commands (each has its own --help):");
-  for (size_t k = 0; k < COMMAND_COUNT; k++) printf("  %-8s %s\n", commands[k].name, commands[k].purpose);
+  const struct command *command;
+  for (size_t k = 0; (command = command_at(k)); k++) printf("  %-11s %s\n", command->name, command->purpose);
   puts("\n"
        "The number of threads is that of OMP_NUM_THREADS; it does not change results.\n"
        "Exit codes: 0 done, 1 run failed (diverged), 2 usage, 3 invalid case, 4 input/output,\n"
@@ -46,7 +30,8 @@ static int unknown_word(const char *word)
 {
   static const char *const own[] = {"--help", "--version"};
   struct suggestion suggestion = {.given = word};
-  for (size_t k = 0; k < COMMAND_COUNT; k++) suggestion_consider(&suggestion, commands[k].name);
+  const struct command *command;
+  for (size_t k = 0; (command = command_at(k)); k++) suggestion_consider(&suggestion, command->name);
   for (size_t k = 0; k < sizeof own / sizeof own[0]; k++) suggestion_consider(&suggestion, own[k]);
   const char *kind = *word == '-' ? "option" : "command";
   if (!suggestion.nearest) return usage_error(NULL, "unknown %s '%s'", kind, word);
@@ -56,8 +41,9 @@ static int unknown_word(const char *word)
 static int dispatch(int argc, char **argv)
 {
   if (argc < 2) return usage_error(NULL, "no command given");
-  for (size_t k = 0; k < COMMAND_COUNT; k++)
-    if (strcmp(argv[1], commands[k].name) == 0) return commands[k].run(argc - 1, argv + 1);
+  const struct command *command;
+  for (size_t k = 0; (command = command_at(k)); k++)
+    if (strcmp(argv[1], command->name) == 0) return command->run(argc - 1, argv + 1);
   bool version = strcmp(argv[1], "--version") == 0, help = strcmp(argv[1], "--help") == 0;
   if (!version && !help) return unknown_word(argv[1]);
   if (argc > 2) return usage_error(NULL, "nothing may follow '%s', but '%s' does", argv[1], argv[2]);

@@ -8,6 +8,11 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+enum { OPTION_FRESH = OPTION_OWN };
+
+const struct option plot_options[] = {
+    {"fresh", no_argument, NULL, OPTION_FRESH}, {"help", no_argument, NULL, OPTION_HELP}, {0}};
+
 static void print_help(void)
 {
   puts("usage: delbm plot DIR [--fresh]\n"
@@ -96,11 +101,8 @@ static bool plot_scene(const struct scene *scene, const struct request *request,
 
 int command_plot(int argc, char **argv)
 {
-  enum { OPTION_FRESH = OPTION_OWN };
-  static const struct option known[] = {
-      {"fresh", no_argument, NULL, OPTION_FRESH}, {"help", no_argument, NULL, OPTION_HELP}, {0}};
   struct request request = {0};
-  for (int option; (option = option_next(argc, argv, known)) != OPTION_END;) {
+  for (int option; (option = option_next(argc, argv, plot_options)) != OPTION_END;) {
     if (option == OPTION_HELP) print_help();
     if (option == OPTION_HELP) return DELBM_OK;
     if (option == OPTION_BAD) return DELBM_USAGE;

@@ -6,12 +6,19 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-struct resume_options {
+struct resume_request {
   const char *directory;
   struct settings settings;
   char steps[64]; /* the setting that --steps stands for */
   bool quiet;
 };
+
+enum { OPTION_STEPS = OPTION_OWN, OPTION_QUIET };
+
+const struct option resume_options[] = {{"steps", required_argument, NULL, OPTION_STEPS},
+                                        {"quiet", no_argument, NULL, OPTION_QUIET},
+                                        {"help", no_argument, NULL, OPTION_HELP},
+                                        {0}};
 
 static void print_help(void)
 {
@@ -41,7 +48,7 @@ static void report_choice(const struct resumption *resumption, const struct sess
             (long long)simulation_step(session->simulation));
 }
 
-static int resume_scene(const struct scene *scene, const struct resume_options *options)
+static int resume_scene(const struct scene *scene, const struct resume_request *options)
 {
   struct status status;
   struct resumption resumption;
@@ -59,7 +66,7 @@ static int resume_scene(const struct scene *scene, const struct resume_options *
   return code;
 }
 
-static int resume_directory(const struct resume_options *options)
+static int resume_directory(const struct resume_request *options)
 {
   struct scene scene = {0};
   struct status status;
@@ -74,13 +81,8 @@ static int resume_directory(const struct resume_options *options)
 
 int command_resume(int argc, char **argv)
 {
-  enum { OPTION_STEPS = OPTION_OWN, OPTION_QUIET };
-  static const struct option known[] = {{"steps", required_argument, NULL, OPTION_STEPS},
-                                        {"quiet", no_argument, NULL, OPTION_QUIET},
-                                        {"help", no_argument, NULL, OPTION_HELP},
-                                        {0}};
-  struct resume_options options = {0};
-  for (int option; (option = option_next(argc, argv, known)) != OPTION_END;) {
+  struct resume_request options = {0};
+  for (int option; (option = option_next(argc, argv, resume_options)) != OPTION_END;) {
     if (option == OPTION_QUIET) {
       options.quiet = true;
       continue;

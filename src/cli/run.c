@@ -7,13 +7,23 @@
 #include <stdlib.h>
 #include <sys/stat.h>
 
-struct run_options {
+struct run_request {
   const char *path;
   const char *directory; /* NULL: out/NAME */
   struct settings settings;
   char plan[64]; /* the setting that --plan stands for */
   bool quiet;
 };
+
+enum { OPTION_OUT = OPTION_OWN, OPTION_SET, OPTION_PLAN, OPTION_QUIET, OPTION_HELP_KEYS };
+
+const struct option run_options[] = {{"out", required_argument, NULL, OPTION_OUT},
+                                     {"set", required_argument, NULL, OPTION_SET},
+                                     {"plan", required_argument, NULL, OPTION_PLAN},
+                                     {"quiet", no_argument, NULL, OPTION_QUIET},
+                                     {"help", no_argument, NULL, OPTION_HELP},
+                                     {"help-keys", no_argument, NULL, OPTION_HELP_KEYS},
+                                     {0}};
 
 static void print_help(void)
 {
@@ -39,18 +49,10 @@ static void print_help(void)
 /* How far reading the command line got: run the case, or leave with an exit code. */
 enum { GO_ON = -1 };
 
-static int parse_options(int argc, char **argv, struct run_options *options)
+static int parse_options(int argc, char **argv, struct run_request *options)
 {
-  enum { OPTION_OUT = OPTION_OWN, OPTION_SET, OPTION_PLAN, OPTION_QUIET, OPTION_HELP_KEYS };
-  static const struct option known[] = {{"out", required_argument, NULL, OPTION_OUT},
-                                        {"set", required_argument, NULL, OPTION_SET},
-                                        {"plan", required_argument, NULL, OPTION_PLAN},
-                                        {"quiet", no_argument, NULL, OPTION_QUIET},
-                                        {"help", no_argument, NULL, OPTION_HELP},
-                                        {"help-keys", no_argument, NULL, OPTION_HELP_KEYS},
-                                        {0}};
   int code;
-  for (int option; (option = option_next(argc, argv, known)) != OPTION_END;) {
+  for (int option; (option = option_next(argc, argv, run_options)) != OPTION_END;) {
     switch (option) {
     case OPTION_OUT:
       options->directory = optarg;
@@ -110,7 +112,7 @@ static bool would_overwrite(const char *path, const char *directory)
   return same;
 }
 
-static int run_in_directory(const struct scene *scene, const struct run_options *options, const char *directory)
+static int run_in_directory(const struct scene *scene, const struct run_request *options, const char *directory)
 {
   if (would_overwrite(options->path, directory))
     return usage_error("run", "the run would overwrite its own case, %s: choose another folder by --out",
@@ -118,7 +120,7 @@ static int run_in_directory(const struct scene *scene, const struct run_options 
   return run_scene(scene, directory, options->quiet);
 }
 
-static int run_case(const struct run_options *options)
+static int run_case(const struct run_request *options)
 {
   struct scene scene = {0};
   int code = case_read(&scene, options->path, &options->settings);
@@ -136,7 +138,7 @@ static int run_case(const struct run_options *options)
 
 int command_run(int argc, char **argv)
 {
-  struct run_options options = {0};
+  struct run_request options = {0};
   int code = parse_options(argc, argv, &options);
   if (code == GO_ON) code = run_case(&options);
   free(options.settings.items);

@@ -1,0 +1,99 @@
+/* Completion of command lines, written from the tables of commands, options and keys: a script for bash, which zsh reads
+ * too, by its own emulation. Where nothing is offered (CASE, DIR, files) the shell completes names of files. */
+#include "cli/commands.h"
+#include "cli/options.h"
+#include "scene/scene_keys.h"
+
+#include <stdio.h>
+#include <string.h>
+
+const struct option completion_options[] = {{"help", no_argument, NULL, OPTION_HELP}, {0}};
+
+static void print_help(void)
+{
+  puts("usage: delbm completion bash|zsh\n"
+       "\n"
+       "Prints a script that makes the shell complete commands, options and the keys of --set. For this shell:\n"
+       "\n"
+       "  eval \"$(delbm completion bash)\"   or   eval \"$(delbm completion zsh)\"\n"
+       "\n"
+       "or put that line into ~/.bashrc or ~/.zshrc.\n"
+       "\n"
+       "  --help  this text");
+}
+
+static void print_commands(void)
+{
+  const struct command *command;
+  printf("    COMPREPLY=($(compgen -W '--help --version");
+  for (size_t k = 0; (command = command_at(k)); k++) printf(" %s", command->name);
+  printf("' -- \"$word\"))\n");
+}
+
+static void print_options(void)
+{
+  const struct command *command;
+  for (size_t k = 0; (command = command_at(k)); k++) {
+    printf("    %s) options='", command->name);
+    for (const struct option *option = command->options; option->name; option++)
+      printf("%s--%s", option == command->options ? "" : " ", option->name);
+    printf("' ;;\n");
+  }
+}
+
+/* "key=", the place in a list being that of its first element. */
+static void print_keys(void)
+{
+  size_t count;
+  const struct key *keys = key_table(&count);
+  printf("    COMPREPLY=($(compgen -W '");
+  for (size_t k = 0; k < count; k++) {
+    const char *brackets = strstr(keys[k].path, "[]");
+    const int length = brackets ? (int)(brackets - keys[k].path) : (int)strlen(keys[k].path);
+    printf("%s%.*s%s%s=", k > 0 ? " " : "", length, keys[k].path, brackets ? ".0" : "", brackets ? brackets + 2 : "");
+  }
+  printf("' -- \"$word\"))\n");
+}
+
+static void print_script(void)
+{
+  puts("# completion of delbm, written by `delbm completion`\n"
+       "_delbm() {\n"
+       "  local word=\"${COMP_WORDS[COMP_CWORD]}\" before=\"${COMP_WORDS[COMP_CWORD-1]}\" options=\n"
+       "  COMPREPLY=()\n"
+       "  if [ \"$COMP_CWORD\" = 1 ]; then");
+  print_commands();
+  puts("    return\n"
+       "  fi\n"
+       "  if [ \"$before\" = --set ]; then");
+  print_keys();
+  puts("    type compopt >/dev/null 2>&1 && compopt -o nospace\n"
+       "    return\n"
+       "  fi\n"
+       "  case \"${COMP_WORDS[1]}\" in");
+  print_options();
+  puts("  esac\n"
+       "  case \"${COMP_WORDS[1]},$word\" in\n"
+       "    *,-*) COMPREPLY=($(compgen -W \"$options\" -- \"$word\")) ;;\n"
+       "    completion,*) COMPREPLY=($(compgen -W 'bash zsh' -- \"$word\")) ;;\n"
+       "  esac\n"
+       "}\n"
+       "complete -o default -F _delbm delbm");
+}
+
+int command_completion(int argc, char **argv)
+{
+  for (int option; (option = option_next(argc, argv, completion_options)) != OPTION_END;) {
+    if (option != OPTION_HELP) return DELBM_USAGE;
+    print_help();
+    return DELBM_OK;
+  }
+  const char *shell = option_operand(argc, argv, "bash or zsh");
+  if (!shell) return DELBM_USAGE;
+  const bool zsh = strcmp(shell, "zsh") == 0;
+  if (!zsh && strcmp(shell, "bash") != 0)
+    return usage_error(argv[0], "no completion for '%s', only for bash and zsh", shell);
+  if (zsh) puts("autoload -Uz compinit bashcompinit && compinit && bashcompinit");
+  print_script();
+  return DELBM_OK;
+}
