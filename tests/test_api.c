@@ -269,6 +269,24 @@ Test(api, a_checkpoint_gives_back_the_bits_and_another_case_refuses_it)
   shell_leave();
 }
 
+Test(api, a_checkpoint_of_a_run_can_be_loaded)
+{
+  shell_enter();
+  shell_write("case.yaml", crowd);
+  cr_assert_eq(shell("$DELBM run case.yaml --quiet --out o --set run.steps=40 --set output.checkpoint.every=25 >log"),
+               0);
+  struct delbm_simulation *a = opened(crowd), *b;
+  struct delbm_status status;
+  cr_assert_eq(delbm_open_file(&b, "o", NULL, 0, &status), DELBM_OK, "%s", status.message);
+  cr_assert_eq(delbm_load(b, "o/checkpoint.0", &status), DELBM_OK, "%s", status.message);
+  step(a, delbm_time(b));
+  expect_same("of a run", a, b);
+  cr_expect_eq(delbm_time(b), 25);
+  delbm_close(a);
+  delbm_close(b);
+  shell_leave();
+}
+
 Test(api, what_is_wrong_is_told_by_key_and_place)
 {
   struct delbm_simulation *s;

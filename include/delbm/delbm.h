@@ -111,7 +111,8 @@ DELBM_API enum delbm_code delbm_write_fluid(struct delbm_simulation *simulation,
                                             struct delbm_status *status);
 
 /* Writes the whole state to a file, in one move: a file that stood there stands until the new one is whole. Loading it
- * into a simulation opened from the same case gives what was saved, and its coming steps have the same bits. */
+ * into a simulation opened from the same case gives what was saved, and its coming steps have the same bits. The files
+ * checkpoint.0 and checkpoint.1 of a run are such files, of its case.yaml. */
 DELBM_API enum delbm_code delbm_save(struct delbm_simulation *simulation, const char *path,
                                      struct delbm_status *status);
 DELBM_API enum delbm_code delbm_load(struct delbm_simulation *simulation, const char *path,

@@ -11,7 +11,6 @@
 static const double most_cells = 8589934592.0; /* 2^33 */
 static const double cell_bytes = 72;           /* nine populations in double precision */
 static const double most_discs = 5e7;
-static const double most_speed = 0.3;
 static const double most_cover = 4; /* the discs' areas together, of the box */
 static const double clearance = 4;  /* cells between a disc and its own image across a periodic axis */
 
@@ -194,9 +193,9 @@ static void check_disc(struct draft *draft, size_t i)
   if (disc->motion == DISC_FIXED && (velocity[0] != 0 || velocity[1] != 0))
     draft_refuse(draft, disc_path(path, i, "velocity"), "none for a fixed disc, which may only spin");
   double speed = hypot(velocity[0], velocity[1]) + fabs(disc->spin) * disc->radius;
-  if (speed > most_speed)
+  if (speed > scene_most_speed)
     draft_refuse(draft, disc_path(path, i, disc->spin != 0 ? "spin" : "velocity"),
-                 "|velocity| + |spin| radius <= %g, not %.3g, for the Mach number's sake", most_speed, speed);
+                 "|velocity| + |spin| radius <= %g, not %.3g, for the Mach number's sake", scene_most_speed, speed);
 }
 
 /* A centre and whose it is. */

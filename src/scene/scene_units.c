@@ -39,6 +39,17 @@ void scene_units_read(struct draft *draft)
   if (units->dt == 0 && draft->lattice_viscosity > 0 && units->dx > 0) units->dt = step_from_viscosity(draft);
 }
 
+/* True where the block leaves dt to follow from fluid.viscosity, which is given, and is not wrong in itself, but does not
+ * tell it. */
+static bool step_is_open(const struct draft *draft)
+{
+  const struct units *units = &draft->scene.units;
+  const struct tree_node *node = tree_find(draft->root, "fluid.viscosity");
+  const struct key *key;
+  if (units->dx == 0 || units->dt > 0 || draft->lattice_viscosity == 0 || !node) return false;
+  return key_role("fluid", "viscosity", &key) == ROLE_KEY && (!node->refused || value_lacks_units(key, node, units));
+}
+
 void scene_units_check(struct draft *draft)
 {
   if (!draft_gives(draft, "units") || !draft_knows(draft, "units")) return;
@@ -46,7 +57,6 @@ void scene_units_check(struct draft *draft)
   if (!draft_gives(draft, "units.dx")) draft_refuse(draft, "units.dx", "the length of a cell, such as 0.1 mm");
   if (dt && viscosity) draft_refuse(draft, "units.viscosity", "dt or viscosity, from which dt follows, not both");
   if (!dt && !viscosity) draft_refuse(draft, "units.dt", "the duration of a step, such as 0.5 ms, or units.viscosity");
-  if (viscosity && !dt && draft_knows(draft, "units.viscosity") && draft->scene.units.dx > 0 &&
-      draft->scene.units.dt == 0 && draft_knows(draft, "fluid.viscosity"))
-    draft_refuse(draft, "fluid.viscosity", "a viscosity in m^2/s, from which and from units.viscosity dt follows");
+  if (!dt && viscosity && step_is_open(draft))
+    draft_refuse(draft, "fluid.viscosity", "a viscosity > 0 in m^2/s, from which and from units.viscosity dt follows");
 }
