@@ -1,22 +1,13 @@
 #include "api/handle.h"
-#include "solid/occupation.h"
+#include "sim/sample.h"
 
 #include <math.h>
 
-/* Sums the owners' shares of each cell's weight, from which its fraction follows. */
-static void read_occupation(const struct delbm_simulation *s, double *values)
+static bool read_occupation(const struct delbm_simulation *s, double *values, struct status *status)
 {
-  const struct occupation *o = simulation_occupation(s->simulation);
-  const int nx = s->scene.domain.size[0], ny = s->scene.domain.size[1];
-  for (int y = 0; y < ny; y++) {
-    double *row = values + (size_t)y * (size_t)nx;
-    size_t count = 0;
-    const struct run *runs = o ? occupation_row(o, y, &count) : NULL;
-    for (int x = 0; x < nx; x++) row[x] = 0;
-    for (size_t r = 0; r < count; r++)
-      for (int k = 0; k < runs[r].n; k++) row[runs[r].x + k] += occupation_band(o, y)->share[runs[r].share + (size_t)k];
-    for (int x = 0; count > 0 && x < nx; x++) row[x] = occupation_fraction(row[x], o->three_nu);
-  }
+  const int *size = s->scene.domain.size;
+  const struct sample_grid all = {.count = {size[0], size[1]}, .stride = 1};
+  return simulation_sample(s->simulation, &all, &(struct sample){.occupation = values}, status);
 }
 
 enum delbm_code delbm_read_field(struct delbm_simulation *s, enum delbm_field field, double *values,
@@ -34,8 +25,7 @@ enum delbm_code delbm_read_field(struct delbm_simulation *s, enum delbm_field fi
     simulation_fields(s->simulation, NULL, NULL, values);
     return api_result(true, NULL, out);
   case DELBM_OCCUPATION:
-    read_occupation(s, values);
-    return api_result(true, NULL, out);
+    return api_result(read_occupation(s, values, &status), &status, out);
   }
   return api_result(status_fail(&status, DELBM_USAGE, "no field %d", (int)field), &status, out);
 }
