@@ -5,8 +5,8 @@
 
 #include <math.h>
 
-TestSuite(api, .timeout = 100);
-TestSuite(installed, .init = shell_enter, .fini = shell_leave, .timeout = 170);
+TestSuite(api, .timeout = 100 * SLOWNESS);
+TestSuite(installed, .init = shell_enter, .fini = shell_leave, .timeout = 170 * SLOWNESS);
 
 static const char *const crowd =
     "domain: {size: [120, 100], left: periodic, right: periodic}\n"
@@ -338,6 +338,7 @@ Test(installed, the_shared_library_shows_its_api_and_never_prints_or_ends_the_pr
 /* The library as `meson install` puts it, found through pkg-config; the example compiled as its first lines say. */
 static void run_example(const char *name)
 {
+  if (SLOWNESS > 1) cr_skip_test("the library has sanitizers in it, the example none");
   if (shell("command -v meson pkg-config >/dev/null") != 0) cr_skip_test("no meson or no pkg-config");
   cr_assert_eq(shell("meson install -C %s --no-rebuild --quiet --destdir $PWD/root >log 2>&1 || { cat log; exit 1; }",
                      BUILD_DIR),

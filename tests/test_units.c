@@ -6,7 +6,7 @@
 #include <math.h>
 
 TestSuite(unit);
-TestSuite(case_in_si, .init = shell_enter, .fini = shell_leave, .timeout = 60);
+TestSuite(case_in_si, .init = shell_enter, .fini = shell_leave, .timeout = 60 * SLOWNESS);
 
 static const struct units lattice = {.dx = 1e-4, .dt = 5e-4, .density = 1000};
 
