@@ -91,8 +91,10 @@ static bool compare_channel(struct scene *scene, int64_t steps, double (*profile
   const int height = scene->domain.size[1];
   double *exact[2];
   bool ok = allocate_exact(scene, exact, status);
-  for (int k = 0; ok && k < CHANNEL_LENGTH * height; k++)
-    exact[0][k] = speed * profile((k / CHANNEL_LENGTH + 0.5) / height);
+  for (int k = 0; ok && k < CHANNEL_LENGTH * height; k++) {
+    const int y = k / CHANNEL_LENGTH;
+    exact[0][k] = speed * profile((y + 0.5) / height);
+  }
   ok = ok && compare(scene, NULL, NULL, steps, exact, outcome, status);
   free(exact[0]);
   scene_clear(scene);

@@ -43,7 +43,7 @@ static bool put_crowds(struct edge *edge, struct crowd_map *crowds, struct statu
     struct place row[MAP_COLUMNS];
     char label[MAP_LABEL];
     for (int c = 0; c < map->columns; c++) {
-      double deepest;
+      double deepest = 0;
       struct scene scene = crowds->scene_of(crowds->columns[c]);
       struct edge_run run = {.steps = edge->report->quick ? crowds->steps / 20 : crowds->steps,
                              .every = 50,
@@ -109,7 +109,7 @@ static bool map_cluster(struct edge *edge, struct status *status)
     struct place row[MAP_COLUMNS];
     char label[MAP_LABEL];
     for (int c = 0; c < map.columns; c++) {
-      double deepest;
+      double deepest = 0;
       struct scene scene = cluster((int)counts[c], radii[r]);
       struct edge_run run = {
           .steps = edge->report->quick ? 50 : 1000, .every = 10, .watch = watch_overlap, .context = &deepest};

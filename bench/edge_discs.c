@@ -51,7 +51,8 @@ static bool terminal_speed(struct edge *edge, struct scene *scene, struct edge_r
   run->watch = note_speed;
   run->context = &travel;
   const bool ok = edge_run(edge, scene, run, status);
-  *speed = travel.sum / travel.count;
+  run->context = NULL;
+  *speed = travel.count > 0 ? travel.sum / travel.count : 0;
   scene_clear(scene);
   return ok;
 }

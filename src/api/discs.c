@@ -68,7 +68,7 @@ enum delbm_code delbm_read_discs(const struct delbm_simulation *s, size_t first,
   struct status status;
   if (!api_has_discs(s, first, count, &status)) return api_result(false, &status, out);
   for (size_t k = 0; k < count; k++) states[k] = api_disc_state(simulation_discs(s->simulation), first + k);
-  return api_result(true, NULL, out);
+  return api_success(out);
 }
 
 enum delbm_code delbm_write_discs(struct delbm_simulation *s, size_t first, size_t count,

@@ -17,13 +17,13 @@ enum delbm_code delbm_read_field(struct delbm_simulation *s, enum delbm_field fi
   switch (field) {
   case DELBM_DENSITY:
     simulation_fields(s->simulation, values, NULL, NULL);
-    return api_result(true, NULL, out);
+    return api_success(out);
   case DELBM_VELOCITY_X:
     simulation_fields(s->simulation, NULL, values, NULL);
-    return api_result(true, NULL, out);
+    return api_success(out);
   case DELBM_VELOCITY_Y:
     simulation_fields(s->simulation, NULL, NULL, values);
-    return api_result(true, NULL, out);
+    return api_success(out);
   case DELBM_OCCUPATION:
     return api_result(read_occupation(s, values, &status), &status, out);
   }

@@ -18,14 +18,23 @@ void delbm_close(struct delbm_simulation *s)
   free(s);
 }
 
-enum delbm_code api_result(bool good, const struct status *status, struct delbm_status *out)
+static enum delbm_code tell(struct delbm_status *out, enum delbm_code code, const char *message)
 {
-  const enum delbm_code code = good ? DELBM_OK : status->code;
   if (out) {
     out->code = code;
-    snprintf(out->message, sizeof out->message, "%s", good ? "" : status->message);
+    snprintf(out->message, sizeof out->message, "%s", message);
   }
   return code;
+}
+
+enum delbm_code api_success(struct delbm_status *out)
+{
+  return tell(out, DELBM_OK, "");
+}
+
+enum delbm_code api_result(bool good, const struct status *status, struct delbm_status *out)
+{
+  return good ? api_success(out) : tell(out, status->code, status->message);
 }
 
 enum delbm_code api_case_result(bool good, const struct status *status, const struct scene_errors *errors,
@@ -50,7 +59,7 @@ enum delbm_code delbm_step(struct delbm_simulation *s, int64_t steps, struct del
       return api_result(false, &status, out);
     api_drive_end(s);
   }
-  return api_result(true, NULL, out);
+  return api_success(out);
 }
 
 int64_t delbm_time(const struct delbm_simulation *s)

@@ -23,6 +23,7 @@ struct delbm_simulation {
 };
 
 /* Hands an outcome to the caller: the code of *status if not `good`. `out` may be NULL. */
+enum delbm_code api_success(struct delbm_status *out);
 enum delbm_code api_result(bool good, const struct status *status, struct delbm_status *out);
 
 /* The same for a case with errors, if there are any: as many of them as there is room for. */
