@@ -296,3 +296,26 @@ Test(program, a_sweep_as_a_slurm_array_runs_as_the_readme_says)
                      "out/dkt-101.0/run.json | wc -l) = 3"),
                0);
 }
+
+/* What the maps of `delbm bench stability` say of a case, and that a sound case hears nothing of them. */
+Test(program, info_warns_of_what_the_maps_found_to_fail)
+{
+  static const struct {
+    const char *settings, *note;
+  } cases[] = {
+      {"--set fluid.viscosity=0.002 --set fluid.magic=0.1875", "diverges first of all choices"},
+      {"--set coupling.solve=explicit-averaged --set particles.density=0.4", "explicit-averaged diverges"},
+      {"--set coupling.form=owen --set 'particles={discs: [{radius: 9, position: [90, 90], fixed: true, spin: "
+       "0.004}]}'",
+       "is made to spin"},
+      {"--set contact.substeps=1 --set contact.stiffness=1000", "1 sub-steps are fewer than"},
+      {"--set contact.area=cells --set contact.stiffness=1000", "contacts are stiff for area: cells"},
+      {"--set 'particles.gravity=[0, -0.02]'", "of the fluid's pressure"},
+  };
+  shell_write("crowd.yaml", crowd);
+  cr_expect_eq(shell("$DELBM info crowd.yaml >out && ! grep 'bench/README' out >&2"), 0);
+  for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++)
+    cr_expect_eq(shell("$DELBM info crowd.yaml %s >out 2>&1 && grep -q \"%s\" out || { cat out >&2; exit 1; }",
+                       cases[k].settings, cases[k].note),
+                 0, "%s: no note", cases[k].settings);
+}

@@ -10,11 +10,11 @@ static void advise_rates(const struct scene *scene)
 {
   const struct rates *rates = &scene->fluid.rates;
   if (scene->fluid.collision == COLLISION_MRT && rates->q < 0.25 && fabs(rates->e - rates->nu) > 0.1)
-    printf("  note: s_q %.3g beside s_e %.3g diverges first of all choices at small viscosity; collision: trt has the "
-           "same "
-           "magic parameter and goes farther, the rates 1.4 and 1.2 farthest where there are discs (bench/README.md, "
-           "stability)\n",
-           rates->q, rates->e);
+    printf(
+        "  note: s_q %.3g beside s_e %.3g diverges first of all choices at small viscosity; collision: trt has the "
+        "same magic parameter and goes farther, the rates 1.4 and 1.2 farthest where there are discs (bench/README.md, "
+        "stability)\n",
+        rates->q, rates->e);
   else if (scene->fluid.viscosity < 0.001)
     printf("  note: viscosity below 0.001; no collision operator is reliable there above Mach 0.2 (bench/README.md, "
            "stability)\n");
@@ -64,6 +64,18 @@ static void advise_substeps(const struct scene *scene)
         scene->contact.substeps, needed);
 }
 
+/* Benchmark `accuracy`, impact: an area by cells stays what it is within a step. */
+static void advise_area(const struct scene *scene)
+{
+  struct scene freely = *scene;
+  freely.contact.substeps = 0;
+  if (scene->contact.area == AREA_CELLS && plan_largest_substeps(&freely) > 1)
+    printf("  note: contacts are stiff for area: cells, which gains energy where one lasts fewer than %g steps; area: "
+           "lens "
+           "does not (bench/README.md, stability)\n",
+           scene->contact.steps_per_contact);
+}
+
 /* Map "packing": discs held up by the pressure of a fluid that has not so much of it. */
 static void advise_weight(const struct scene *scene)
 {
@@ -93,4 +105,5 @@ void print_advice(const struct scene *scene)
   advise_spin(scene);
   advise_weight(scene);
   advise_substeps(scene);
+  advise_area(scene);
 }
