@@ -73,7 +73,7 @@ static void sort_discs(struct linked_cell *l, const struct discs *discs)
 
 static double nearest(const struct linked_cell *l, int axis, double d)
 {
-  return l->periodic[axis] ? d - l->size[axis] * rint(d / l->size[axis]) : d;
+  return nearest_image(d, l->size[axis], l->periodic[axis]);
 }
 
 static bool add_pair(struct pair_batch *row, uint32_t i, uint32_t k, struct status *status)

@@ -59,11 +59,9 @@ static double inverse_mass(const struct discs *d, uint32_t i)
   return d->motion[i] == DISC_FREE ? 1 / d->mass[i] : 0;
 }
 
-/* The nearest image's displacement along one axis. */
-static double nearest(const struct scene *scene, int axis, double displacement)
+static double nearest(const struct scene *scene, int axis, double d)
 {
-  const double size = scene->domain.size[axis];
-  return scene_is_periodic(scene, axis) ? displacement - size * rint(displacement / size) : displacement;
+  return nearest_image(d, scene->domain.size[axis], scene_is_periodic(scene, axis));
 }
 
 static double distance_to_side(const struct scene *scene, enum side_name side, double x, double y)

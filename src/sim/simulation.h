@@ -1,5 +1,6 @@
-/* The simulation: a scene set in motion. One step is four stages, each one function (occupation, exchange, contact,
- * sweep), run by all threads of one parallel region that spans many steps. */
+/* The simulation: a scene set in motion. One step is four stages, each one function (exchange, which the motion of the
+ * discs ends behind the contacts; contact; occupation; sweep), run by all threads of one parallel region that spans many
+ * steps. */
 #ifndef DELBM_SIM_SIMULATION_H
 #define DELBM_SIM_SIMULATION_H
 

@@ -63,9 +63,7 @@ static double cells_area(const struct occupation *o, const struct encounter *e, 
 
 static double nearest(const struct occupation *o, int axis, double d)
 {
-  const double size = o->size[axis];
-  if (!o->periodic[axis] || fabs(d) <= size / 2) return d;
-  return d > 0 ? d - size : d + size;
+  return nearest_image(d, o->size[axis], o->periodic[axis]);
 }
 
 /* Whether row y is the one in which the pair is noted: that of the point where the discs' radical line crosses the line of

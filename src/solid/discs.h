@@ -27,4 +27,11 @@ void discs_destroy(struct discs *discs);
 /* Saves or restores what changes: places, velocities and the forces of the last step. */
 bool discs_store(struct discs *discs, struct store *store, struct status *status);
 
+/* Displacement d along an axis of this size, or where it is periodic that of the nearest image; |d| < 3/2 size. */
+static inline double nearest_image(double d, double size, bool periodic)
+{
+  if (!periodic || (d >= -size / 2 && d <= size / 2)) return d;
+  return d > 0 ? d - size : d + size;
+}
+
 #endif
