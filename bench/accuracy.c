@@ -13,7 +13,7 @@ static const struct accuracy_case *const cases[] = {&accuracy_taylor_green, &acc
                                                     &accuracy_couette,      &accuracy_spin,        &accuracy_drag,
                                                     &accuracy_settling,     &accuracy_crossing,    &accuracy_impact};
 
-enum { CHOICES = OPERATOR_COUNT * 2 * 2 };
+enum { CHOICES = OPERATOR_COUNT * FORM_COUNT * 2 };
 
 /* One choice over all resolutions of its case. */
 struct series {
@@ -33,12 +33,13 @@ struct study {
 
 void accuracy_apply(const struct accuracy_choice *choice, struct scene *scene)
 {
-  static const enum collision collisions[] = {COLLISION_BGK, COLLISION_TRT, COLLISION_MRT, COLLISION_MRT,
-                                              COLLISION_MRT};
+  static const enum collision collisions[] = {COLLISION_BGK, COLLISION_TRT, COLLISION_MRT,
+                                              COLLISION_MRT, COLLISION_MRT, COLLISION_ADAPTIVE};
   struct rates *rates = &scene->fluid.rates;
   scene->fluid.collision = collisions[choice->operator];
-  if (scene->fluid.collision != COLLISION_MRT) rates->e = rates->nu;
+  if (choice->operator== OPERATOR_BGK || choice->operator== OPERATOR_TRT) rates->e = rates->nu;
   if (choice->operator== OPERATOR_BGK) rates->q = rates->nu;
+  if (choice->operator== OPERATOR_ADAPTIVE) scene_use_adaptive(scene);
   if (choice->operator== OPERATOR_TRT || choice->operator== OPERATOR_MAGIC) scene_use_magic(scene);
   if (choice->operator== OPERATOR_TWELFTH) rates->q = rate_from_magic(1.0 / 12, scene->fluid.viscosity);
   scene->fluid.precision = choice->precision;
@@ -81,8 +82,8 @@ bool accuracy_field_error(struct simulation *simulation, double *const exact[2],
 
 static void name_choice(const struct accuracy_case *one, const struct accuracy_choice *c, char name[64])
 {
-  static const char *const operators[] = {"bgk", "trt", "mrt", "mrt + 3/16", "mrt + 1/12"};
-  static const char *const forms[] = {"unified, ", "owen, "}, *const precisions[] = {"double", "single"};
+  static const char *const operators[] = {"bgk", "trt", "mrt", "mrt + 3/16", "mrt + 1/12", "adaptive"};
+  static const char *const forms[] = {"unified, ", "owen, ", "midpoint, "}, *const precisions[] = {"double", "single"};
   if (one->with_areas)
     snprintf(name, 64, "%s", c->area == AREA_LENS ? "lens" : "cells");
   else
@@ -99,7 +100,7 @@ static void add_series(struct study *study, struct accuracy_choice choice)
 
 static void list_choices(struct study *study)
 {
-  const struct accuracy_choice usual = {OPERATOR_MRT, FORM_OWEN, PRECISION_DOUBLE, AREA_LENS};
+  const struct accuracy_choice usual = {OPERATOR_ADAPTIVE, FORM_MIDPOINT, PRECISION_DOUBLE, AREA_LENS};
   struct accuracy_choice c = usual;
   study->count = 0;
   for (int area = AREA_LENS; study->one->with_areas && area <= AREA_CELLS; area++) {
@@ -107,7 +108,7 @@ static void list_choices(struct study *study)
     add_series(study, c);
   }
   if (study->one->with_areas) return;
-  for (int form = study->one->with_forms ? FORM_UNIFIED : FORM_OWEN; form <= FORM_OWEN; form++)
+  for (int form = study->one->with_forms ? FORM_UNIFIED : FORM_MIDPOINT; form < FORM_COUNT; form++)
     for (int operator= 0; operator<OPERATOR_COUNT; operator++)
       for (int precision = PRECISION_DOUBLE; precision <= PRECISION_SINGLE; precision++) {
         c.form = form, c.operator= operator, c.precision = precision;

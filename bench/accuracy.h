@@ -6,8 +6,16 @@
 #include "scenes.h"
 #include "sim/simulation.h"
 
-/* The last two are mrt with the rate q from the magic parameter, 3/16 and 1/12. */
-enum accuracy_operator { OPERATOR_BGK, OPERATOR_TRT, OPERATOR_MRT, OPERATOR_MAGIC, OPERATOR_TWELFTH, OPERATOR_COUNT };
+/* MAGIC and TWELFTH are mrt with the rate q from the magic parameter, 3/16 and 1/12. */
+enum accuracy_operator {
+  OPERATOR_BGK,
+  OPERATOR_TRT,
+  OPERATOR_MRT,
+  OPERATOR_MAGIC,
+  OPERATOR_TWELFTH,
+  OPERATOR_ADAPTIVE,
+  OPERATOR_COUNT
+};
 
 struct accuracy_choice {
   enum accuracy_operator operator;

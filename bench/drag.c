@@ -15,7 +15,10 @@ static const struct choice {
                {"owen, mrt", {OPERATOR_MRT, FORM_OWEN, PRECISION_DOUBLE, AREA_LENS}},
                {"owen, trt", {OPERATOR_TRT, FORM_OWEN, PRECISION_DOUBLE, AREA_LENS}},
                {"owen, mrt + 3/16", {OPERATOR_MAGIC, FORM_OWEN, PRECISION_DOUBLE, AREA_LENS}},
-               {"owen, mrt + 1/12", {OPERATOR_TWELFTH, FORM_OWEN, PRECISION_DOUBLE, AREA_LENS}}};
+               {"owen, mrt + 1/12", {OPERATOR_TWELFTH, FORM_OWEN, PRECISION_DOUBLE, AREA_LENS}},
+               {"midpoint, mrt", {OPERATOR_MRT, FORM_MIDPOINT, PRECISION_DOUBLE, AREA_LENS}},
+               {"midpoint, trt", {OPERATOR_TRT, FORM_MIDPOINT, PRECISION_DOUBLE, AREA_LENS}},
+               {"midpoint, adaptive", {OPERATOR_ADAPTIVE, FORM_MIDPOINT, PRECISION_DOUBLE, AREA_LENS}}};
 
 static const double viscosities[] = {0.005, 0.02, 0.05, 1.0 / 6};
 enum { VISCOSITIES = sizeof viscosities / sizeof viscosities[0], RADIUS = 5 };

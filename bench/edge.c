@@ -11,20 +11,20 @@
 static const char *const files[] = {"case.yaml", "particles.csv", "run.json"};
 enum { FILES = sizeof files / sizeof files[0] };
 
-const struct edge_operator edge_operators[EDGE_OPERATORS] = {{"bgk", 0, 0, 0},
-                                                             {"trt 3/16", 0, 0, 3.0 / 16},
-                                                             {"mrt 1.4 1.2", 1.4, 1.2, 0},
-                                                             {"mrt s_nu 1.2", 0, 1.2, 0},
-                                                             {"mrt 1.4 magic 3/16", 1.4, 0, 3.0 / 16}};
+const struct edge_operator edge_operators[EDGE_OPERATORS] = {
+    {.name = "bgk"},
+    {.name = "trt 3/16", .magic = 3.0 / 16},
+    {.name = "mrt 1.4 1.2", .e = 1.4, .q = 1.2},
+    {.name = "mrt s_nu 1.2", .q = 1.2},
+    {.name = "mrt 1.4 magic 3/16", .e = 1.4, .magic = 3.0 / 16},
+    {.name = "adaptive", .e = 1.4, .magic = 1.0 / 12, .fast = 1.2}};
 
 struct rates edge_rates(const struct edge_operator *choice, double viscosity)
 {
-  const double nu = rate_from_viscosity(viscosity), magic = choice->magic;
-  return (struct rates){.nu = nu,
-                        .e = choice->e > 0 ? choice->e : nu,
-                        .q = magic > 0       ? rate_from_magic(magic, viscosity)
-                             : choice->q > 0 ? choice->q
-                                             : nu};
+  const double nu = rate_from_viscosity(viscosity), given = choice->q > 0 ? choice->q : nu;
+  const double q = choice->magic > 0 ? rate_from_magic(choice->magic, viscosity) : given;
+  return (struct rates){
+      .nu = nu, .e = choice->e > 0 ? choice->e : nu, .q = q, .q_fast = q < choice->fast ? choice->fast : 0};
 }
 
 bool edge_open(struct edge *edge, const struct bench_report *report, struct status *status)

@@ -39,9 +39,10 @@ struct edge_operator {
   double e;     /* 0: s_nu */
   double q;     /* 0: s_nu, or from magic */
   double magic; /* 0: q as given */
+  double fast;  /* q of fast fluid; 0: q everywhere */
 };
 
-enum { EDGE_OPERATORS = 5 };
+enum { EDGE_OPERATORS = 6 };
 extern const struct edge_operator edge_operators[EDGE_OPERATORS];
 struct rates edge_rates(const struct edge_operator *choice, double viscosity);
 

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const char *const forms[] = {[FORM_UNIFIED] = "unified", [FORM_OWEN] = "owen"};
+static const char *const forms[] = {[FORM_UNIFIED] = "unified", [FORM_OWEN] = "owen", [FORM_MIDPOINT] = "midpoint"};
 static const char *const solves[] = {[SOLVE_IMPLICIT] = "implicit", [SOLVE_EXPLICIT_AVERAGED] = "averaged"};
 
 /* A disc of R = 5 in a channel, moved by a weight less buoyancy that is the same whatever its density, in one direction

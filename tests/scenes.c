@@ -26,6 +26,13 @@ void scene_use_magic(struct scene *scene)
   scene->fluid.rates.q = rate_from_magic(3.0 / 16, scene->fluid.viscosity);
 }
 
+void scene_use_adaptive(struct scene *scene)
+{
+  scene->fluid.collision = COLLISION_ADAPTIVE;
+  scene->fluid.rates.q = rate_from_magic(1.0 / 12, scene->fluid.viscosity);
+  scene->fluid.rates.q_fast = scene->fluid.rates.q < 1.2 ? 1.2 : 0;
+}
+
 struct disc_spec *scene_add_disc(struct scene *scene, double radius, double density, double x, double y)
 {
   const size_t count = scene->particles.count + 1;

@@ -12,6 +12,9 @@ struct scene scene_box(int nx, int ny, double viscosity, enum sides sides);
 /* Sets s_q from the magic parameter 3/16. */
 void scene_use_magic(struct scene *scene);
 
+/* The default: s_q from 1/12 in slow fluid, 1.2 in fast. */
+void scene_use_adaptive(struct scene *scene);
+
 /* Adds a free disc at rest; returns it for further settings, valid until the next one is added. */
 struct disc_spec *scene_add_disc(struct scene *scene, double radius, double density, double x, double y);
 

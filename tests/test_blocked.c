@@ -63,9 +63,10 @@ Test(blocked, any_depth_width_and_number_of_threads_gives_the_bits_of_single_ste
   static const int depths[] = {1, 2, 3, 8, 11}, widths[] = {0, 16, 30}, threads[] = {1, 2, 3};
   static double expected[NX * NY * Q], obtained[NX * NY * Q];
   for (int sides = 0; sides < 4; sides++)
-    for (int force = 0; force < 2; force++) {
+    for (int way = 0; way < 4; way++) {
       struct scene scene = stirred_box(NX, NY, sides);
-      if (force) scene.fluid.force[0] = 1e-4;
+      if (way % 2) scene.fluid.force[0] = 1e-4;
+      if (way / 2) scene_use_adaptive(&scene);
       const struct blocking none = {.depth = 0};
       populations_after(&scene, &none, 1, expected);
       for (size_t d = 0; d < sizeof depths / sizeof depths[0]; d++)
@@ -75,7 +76,7 @@ Test(blocked, any_depth_width_and_number_of_threads_gives_the_bits_of_single_ste
             if (blocking.depth > blocked_deepest(NY, threads[t])) continue;
             populations_after(&scene, &blocking, threads[t], obtained);
             cr_expect_eq(memcmp(expected, obtained, sizeof expected), 0,
-                         "sides %d, force %d, depth %d, width %d, threads %d", sides, force, depths[d], widths[w],
+                         "sides %d, way %d, depth %d, width %d, threads %d", sides, way, depths[d], widths[w],
                          threads[t]);
           }
     }

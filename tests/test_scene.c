@@ -270,10 +270,10 @@ Test(scene, minimal_case_has_documented_defaults)
   cr_assert(reading.valid);
   cr_expect_str_eq(scene->title, "");
   for (int s = 0; s < SIDE_COUNT; s++) cr_expect_eq(scene->domain.side[s].type, SIDE_WALL);
-  cr_expect(scene->fluid.collision == COLLISION_MRT && scene->fluid.precision == PRECISION_DOUBLE);
-  cr_expect(scene->fluid.rates.e == 1.4 && scene->fluid.rates.q == 1.2);
+  cr_expect(scene->fluid.collision == COLLISION_ADAPTIVE && scene->fluid.precision == PRECISION_DOUBLE);
+  cr_expect(scene->fluid.rates.e == 1.4 && scene->fluid.rates.q == rate_from_magic(1.0 / 12, scene->fluid.viscosity));
   cr_expect(!scene->fluid.zero_flux && !scene->fluid.kernel);
-  cr_expect(scene->coupling.form == FORM_OWEN && scene->coupling.solve == SOLVE_IMPLICIT);
+  cr_expect(scene->coupling.form == FORM_MIDPOINT && scene->coupling.solve == SOLVE_IMPLICIT);
   cr_expect(scene->particles.count == 0 && !scene->particles.fill.present);
   cr_expect(scene->contact.area == AREA_LENS && scene->contact.search == SEARCH_GRID);
   cr_expect(scene->contact.stiffness == 0.25 && scene->contact.alpha == 0.3 && scene->contact.damping == 0.34);
@@ -299,7 +299,7 @@ Test(scene, written_case_reads_back_the_same)
   for (size_t i = 0; i < sizeof sides / sizeof sides[0]; i++) expect_round_trip_of(sides[i]);
 }
 
-Test(scene, written_trt_case_reads_back_the_same_rates)
+Test(scene, written_case_with_a_magic_parameter_reads_back_the_same_rates)
 {
   static const double viscosities[] = {1e-6, 0.005, 0.05, 1.0 / 6, 0.1234567890123456, 10};
   static const double magics[] = {1e-8, 0.0101, 1.0 / 12, 0.1875, 1.0 / 3, 0.98765432109876543, 10};
@@ -307,8 +307,8 @@ Test(scene, written_trt_case_reads_back_the_same_rates)
     for (size_t j = 0; j < sizeof magics / sizeof *magics; j++) {
       char text[256];
       snprintf(text, sizeof text,
-               "domain: {size: [9, 9]}\nfluid: {viscosity: %.17g, collision: trt, magic: %.17g}\nrun: {steps: 1}\n",
-               viscosities[i], magics[j]);
+               "domain: {size: [9, 9]}\nfluid: {viscosity: %.17g, collision: %s, magic: %.17g}\nrun: {steps: 1}\n",
+               viscosities[i], magics[j] < 0.5 ? "trt" : "adaptive", magics[j]);
       expect_round_trip_of(text);
     }
   }
@@ -335,8 +335,18 @@ Test(scene, rates_follow_the_collision)
   cr_expect(trt.fluid.rates.e == trt.fluid.rates.nu && trt.fluid.rates.q == rate_from_magic(0.1875, 0.1));
   struct scene nested = scene_with("fluid={viscosity: 0.1, collision: trt, rates: {magic: 0.25}}");
   cr_expect_eq(nested.fluid.rates.q, rate_from_magic(0.25, 0.1));
-  struct scene mrt = scene_with("fluid={viscosity: 0.1, magic: 0.25, rates: {e: 1.3}}");
+  struct scene mrt = scene_with("fluid={viscosity: 0.1, collision: mrt, magic: 0.25, rates: {e: 1.3}}");
   cr_expect(mrt.fluid.rates.e == 1.3 && mrt.fluid.rates.q == rate_from_magic(0.25, 0.1));
+  struct scene adaptive = scene_with("fluid={viscosity: 0.01, rates: {e: 1.3}}");
+  cr_expect(adaptive.fluid.rates.q == rate_from_magic(1.0 / 12, 0.01) && adaptive.fluid.rates.q_fast == 1.2);
+  cr_expect(adaptive.fluid.collision == COLLISION_ADAPTIVE && adaptive.fluid.rates.e == 1.3);
+  struct scene thick = scene_with("fluid={viscosity: 0.2}"); /* slow fluid relaxes q faster than fast fluid would */
+  cr_expect(thick.fluid.rates.q == rate_from_magic(1.0 / 12, 0.2) && thick.fluid.rates.q_fast == 0);
+  struct scene given = scene_with("fluid={viscosity: 0.01, rates: {q: 1.1}}");
+  cr_expect(given.fluid.collision == COLLISION_MRT && given.fluid.rates.q == 1.1 && given.fluid.rates.q_fast == 0);
+  scene_clear(&adaptive);
+  scene_clear(&thick);
+  scene_clear(&given);
   scene_clear(&bgk);
   scene_clear(&trt);
   scene_clear(&nested);

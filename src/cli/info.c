@@ -83,12 +83,15 @@ static void advise_viscosity(const struct scene *scene, double wanted)
 
 static void print_fluid(const struct scene *scene)
 {
-  static const char *const collisions[] = {"bgk", "trt", "mrt"};
+  static const char *const collisions[] = {"bgk", "trt", "mrt", "adaptive"};
   const struct rates *rates = &scene->fluid.rates;
   const double tau = 1 / rates->nu;
-  printf("fluid        viscosity %g, tau %.6g; %s with s_nu %.6g, s_e %.6g, s_q %.6g (magic %.4g)\n",
+  printf("fluid        viscosity %g, tau %.6g; %s with s_nu %.6g, s_e %.6g, s_q %.6g (magic %.4g)",
          scene->fluid.viscosity, tau, collisions[scene->fluid.collision], rates->nu, rates->e, rates->q,
          (1 / rates->q - 0.5) * (tau - 0.5));
+  if (rates->q_fast > 0)
+    printf(" where |u| is far below %g cells/step, %g far above", scene->fluid.viscosity, rates->q_fast);
+  printf("\n");
   if (scene->fluid.zero_flux)
     printf("zero flux    on: a uniform force cancels the mean momentum%s%s\n", scene_is_closed(scene, 0) ? " in x" : "",
            scene_is_closed(scene, 1) ? " in y" : "");
@@ -165,6 +168,7 @@ static void print_speeds(const struct scene *scene)
 
 static void print_discs(const struct scene *scene)
 {
+  static const char *const forms[] = {"unified (17)-(18)", "owen (12)-(13)", "midpoint"};
   double smallest = INFINITY, largest = 0, area = 0;
   size_t motions[3] = {0};
   for (size_t i = 0; i < scene->particles.count; i++) {
@@ -179,7 +183,7 @@ static void print_discs(const struct scene *scene)
          scene->particles.count, motions[DISC_FREE], motions[DISC_FIXED], motions[DISC_DRIVEN], smallest, largest,
          area / box);
   if (smallest < 2) printf("  note: radius below 2 cells; forces on so small a disc are rough\n");
-  printf("coupling     %s, %s\n", scene->coupling.form == FORM_OWEN ? "owen (12)-(13)" : "unified (17)-(18)",
+  printf("coupling     %s, %s\n", forms[scene->coupling.form],
          scene->coupling.solve == SOLVE_IMPLICIT ? "implicit" : "explicit-averaged");
 }
 

@@ -27,6 +27,30 @@ void reference_destroy(struct reference *r)
   *r = (struct reference){0};
 }
 
+/* The rate of even moments under a drag k = B/(1 - B): of owen for the mean of a moment before and after collision, whose
+ * change is -mean/(Lambda + k/2) (see sweep_kernel.c). */
+static double midpoint_even(double s_nu, double b)
+{
+  const double lambda = 1 / s_nu - 0.5;
+  return b < 1 ? 1 / (lambda + b / (1 - b) / 2 + 0.5) : 0;
+}
+
+/* What q gains, from dq = -(mean q + mean j)/Lambda - 2 k mean q, with dj = -2 B j. */
+static double midpoint_odd(double s_q, double b, double q, double j)
+{
+  const double lambda = 1 / s_q - 0.5, k = b / (1 - b);
+  return b < 1 ? -((q + j - b * j) / lambda + 2 * k * q) / (1 + 1 / (2 * lambda) + k) : -2 * q;
+}
+
+/* The rate of qx and qy at a velocity. */
+static double rate_of_q(const struct rates *rates, double rho, double ux, double uy)
+{
+  const double viscosity = (1 / rates->nu - 0.5) / 3;
+  if (rates->q_fast == 0) return rates->q;
+  const double fast = rho * (ux * ux + uy * uy) / (viscosity * viscosity);
+  return (rates->q + rates->q_fast * fast) / (1 + fast);
+}
+
 /* One cell: (1), (12), (17), with the force of Guo, Zheng & Shi (2002). `b`, `bv`: cover of the cell. */
 static void collide(const double f[Q], const struct sweep_constants *c, enum coupling_form form, double b,
                     const double bv[2], double collided[Q])
@@ -39,8 +63,10 @@ static void collide(const double f[Q], const struct sweep_constants *c, enum cou
   moments_equilibrium(rho, m[M_JX], m[M_JY], force_low);
   moments_equilibrium(rho, m[M_JX] + Fx, m[M_JY] + Fy, force_high);
 
-  const double keep = form == FORM_OWEN ? 1 - b : 1;
-  const double nu = keep * c->rates.nu, e = keep * c->rates.e, q = keep * c->rates.q;
+  const double slow = form == FORM_MIDPOINT ? midpoint_even(c->rates.nu, b) / c->rates.nu : 1;
+  const double keep = form == FORM_OWEN ? 1 - b : slow, u[2] = {(m[M_JX] + Fx / 2) / rho, (m[M_JY] + Fy / 2) / rho};
+  const double s_q = rate_of_q(&c->rates, rho, u[0], u[1]);
+  const double nu = keep * c->rates.nu, e = keep * c->rates.e, q = form == FORM_OWEN ? keep * s_q : s_q;
   const double rate[Q] = {0, e, e, 0, q, 0, q, nu, nu};
   double unforced[Q], force[Q], reflected[Q];
   for (int k = 0; k < Q; k++) {
@@ -53,12 +79,16 @@ static void collide(const double f[Q], const struct sweep_constants *c, enum cou
   after[M_JY] = m[M_JY];
   after[M_QX] = m[M_QX] - q * (m[M_QX] + m[M_JX]);
   after[M_QY] = m[M_QY] - q * (m[M_QY] + m[M_JY]);
+  if (form == FORM_MIDPOINT) { /* all that q gains, less what the reflection below adds */
+    after[M_QX] = m[M_QX] + midpoint_odd(s_q, b, m[M_QX], m[M_JX]) + 2 * b * m[M_QX];
+    after[M_QY] = m[M_QY] + midpoint_odd(s_q, b, m[M_QY], m[M_JY]) + 2 * b * m[M_QY];
+  }
   force_high[M_QX] = -Fx;
   force_high[M_QY] = -Fy;
   populations_from_moments(after, unforced);
   populations_from_moments(force_high, force);
 
-  const double *from = form == FORM_OWEN ? f : unforced;
+  const double *from = form == FORM_UNIFIED ? unforced : f;
   for (int i = 0; i < Q; i++) {
     const double ev = d2q9_ex[i] * bv[0] + d2q9_ey[i] * bv[1];
     const double pushed = 3 * d2q9_weight[i] * (d2q9_ex[i] * Fx + d2q9_ey[i] * Fy); /* by the force, odd part */

@@ -1,7 +1,8 @@
 /* The sweep: collide, immersed moving boundary and stream of one row at a time, in place (see populations.h).
  *
  * A kernel is one body (sweep_kernel.c) compiled per precision and instruction set; literal arguments make its forms:
- * fluid alone or with discs (unified or owen), each with or without a body force. sweep_find chooses one at start-up.
+ * fluid alone or with discs (unified, owen or midpoint), each with constant or adaptive rates, and with or without a
+ * body force. sweep_find chooses one at start-up.
  * */
 #ifndef DELBM_FLUID_SWEEP_H
 #define DELBM_FLUID_SWEEP_H
@@ -16,7 +17,7 @@ struct sweep_constants {
   double uniform[2]; /* and per unit volume (zero_flux) */
 };
 
-/* What covers the cells of a row, in the precision of the populations: b[x] = B (19), and B times the velocity of the
+/* What covers the cells of a row, in the precision of the populations: b[x] = B (weight.h), and B times the velocity of the
  * solid, the sum over owners of w_p B v_p. Zero where no disc is. */
 struct row_cover {
   void *b, *bvx, *bvy;
@@ -40,14 +41,20 @@ typedef void gather_row(void *const a[Q], const struct run *runs, size_t count, 
 typedef void paint_row(const struct row_cover *row, int nx, const struct run *runs, size_t count, const double *share,
                        const struct surface_velocity *surface);
 
+/* True if the rates depend on how fast the fluid is. */
+static inline bool rates_are_adaptive(const struct rates *rates)
+{
+  return rates->q_fast > 0;
+}
+
 /* Largest |j/rho|^2 of n cells; NAN if one is not finite or has no positive density. */
 typedef double scan_row(void *const a[Q], int n);
 
 struct sweep_kernel {
   const char *name; /* for example avx512-double */
   enum precision precision;
-  sweep_row *fluid[2];    /* [with a force?] */
-  sweep_row *discs[2][2]; /* [enum coupling_form][with a force?] */
+  sweep_row *fluid[2][2];             /* [adaptive rates?][with a force?] */
+  sweep_row *discs[FORM_COUNT][2][2]; /* [enum coupling_form][adaptive rates?][with a force?] */
   sweep_row_between *two_arrays;
   gather_row *gather;
   paint_row *paint;

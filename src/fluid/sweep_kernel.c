@@ -18,21 +18,39 @@
  * Immersed boundary: bounce-back changes the sign of odd moments only, and 6 w rho e.v adds 2 rho v to j and 2 rho v/3
  * to t.
  *   owen    (12)-(13): rates times (1 - B), reflection of the moments before collision;
- *   unified (17)-(18): full rates, reflection of the moments after collision.
+ *   unified (17)-(18): full rates, reflection of the moments after collision;
+ *   midpoint: owen for the means of a moment before and after collision, so that viscosity is a matter of scale.
  * Either way j gains exactly 2 h, h = rho B v - B (j + F): what is reflected has felt the force, so that fluid inside a
  * disc keeps the disc's velocity exactly, (j + F/2)/rho = v. And t gains 2 h/3 and, of the difference j/3 - t, the part
- * s_q (1 - B) + 2 B (owen) or s_q (1 - 2 B) + 2 B (unified). */
+ * s_q (1 - B) + 2 B (owen) or s_q (1 - 2 B) + 2 B (unified).
+ *
+ * Why midpoint: streaming links the means m' = m + dm/2 of odd moments with the changes dm of even ones, and means of
+ * even ones with changes of odd ones. A steady slow flow is thus the same for every viscosity if, with Lambda =
+ * 1/s - 1/2, means of even and changes of odd moments are in proportion to Lambda_nu, which without solid they are at
+ * fixed Lambda_nu Lambda_q (d'Humieres & Ginzburg 2009). Owen's form, with k = B/(1 - B), is
+ *   dp = -p'/(Lambda_nu (1 + k) + k/2),   dj = -2 k j',   dq = -(1 + k) (q' + j')/Lambda_q - 2 k q',
+ * which is so once k is in proportion to Lambda_nu (weight.h) and 1 + k, what is left of it as viscosity vanishes, is 1.
+ * Solved for the change that is
+ *   even moments:  rate (1 - B) s/(1 - B (1 - s_nu/2)),
+ *   t:             of j/3 - t the part (s_q (1 - 2 B) + 2 B)/(1 - B s_q/2).
+ *
+ * Adaptive rates: s_q = (slow + fast a)/(1 + a), a = rho |u|^2/viscosity^2, the cell's Reynolds number squared. A small s_q
+ * makes slow flow accurate to third order, and fast flow unstable. Smooth, also since a minimum would be a branch where
+ * cells are not taken in vectors, and its sums then round otherwise. */
 #include "fluid/sweep.h"
 
 #define PASTE3(a, b, c) a##_##b##_##c
 #define NAME3(a, b, c)  PASTE3(a, b, c)
 #define KERNEL(part)    NAME3(part, VARIANT, REAL)
 
+enum { FLUID_ALONE = -1 }; /* in place of a form */
+
 static inline __attribute__((always_inline)) void collide_stream(void *const a[Q], void *const to[Q], const int n,
                                                                  const struct sweep_constants *constants,
                                                                  const struct row_cover *cover, double sum[2],
-                                                                 const bool discs, const bool owen, const bool force)
+                                                                 const int form, const bool adaptive, const bool force)
 {
+  const bool discs = form >= 0;
   const REAL *a0 = a[0], *a1 = a[1], *a2 = a[2], *a3 = a[3], *a4 = a[4];
   const REAL *a5 = a[5], *a6 = a[6], *a7 = a[7], *a8 = a[8];
   REAL *to0 = to[0], *to1 = to[1], *to2 = to[2], *to3 = to[3], *to4 = to[4];
@@ -41,12 +59,14 @@ static inline __attribute__((always_inline)) void collide_stream(void *const a[Q
   const REAL *restrict cover_bvx = discs ? cover->bvx : NULL;
   const REAL *restrict cover_bvy = discs ? cover->bvy : NULL;
   const REAL quarter_nu = (REAL)(constants->rates.nu / 4), quarter_e = (REAL)(constants->rates.e / 4);
-  const REAL quarter_q = (REAL)(constants->rates.q / 4);
+  const REAL slow_q = (REAL)(constants->rates.q / 4);
+  const REAL fast_q = (REAL)(constants->rates.q_fast / 4);
+  const double three_nu = 1 / constants->rates.nu - 0.5;
+  const REAL per_speed2 = (REAL)(9 / (three_nu * three_nu));
   const REAL gx = (REAL)constants->force[0], gy = (REAL)constants->force[1];
   const REAL zx = (REAL)constants->uniform[0], zy = (REAL)constants->uniform[1];
   const REAL one = 1, two = 2, four = 4, half = (REAL)0.5, quarter = (REAL)0.25;
   const REAL third = (REAL)(1.0 / 3), sixth = (REAL)(1.0 / 6), ninth = (REAL)(1.0 / 9), twelfth = (REAL)(1.0 / 12);
-  const REAL reflected_q = owen ? half - quarter_q : half - two * quarter_q;
   REAL sum_x = 0, sum_y = 0;
 
 #pragma omp simd reduction(+ : sum_x, sum_y)
@@ -65,9 +85,21 @@ static inline __attribute__((always_inline)) void collide_stream(void *const a[Q
     const REAL Jux = Jx * ux, Juy = Jy * uy;
 
     const REAL b = discs ? cover_b[x] : 0;
-    const REAL keep = discs && owen ? one - b : one;
+    const REAL speed2 = per_speed2 * (Jux + Juy);
+    const REAL quarter_q = adaptive ? (slow_q + fast_q * speed2) / (one + speed2) : slow_q;
+    REAL keep = 1, q_q = quarter_q;
+    if (form == FORM_UNIFIED) q_q += b * (half - two * quarter_q);
+    if (form == FORM_OWEN) {
+      keep = one - b;
+      q_q += b * (half - quarter_q);
+    }
+    if (form == FORM_MIDPOINT) {
+      const REAL even = one - b + two * b * quarter_nu, odd = one - two * b * quarter_q;
+      const REAL both = one / (even * odd);
+      keep = (one - b) * odd * both;
+      q_q = (quarter_q + b * (half - two * quarter_q)) * even * both;
+    }
     const REAL q_nu = keep * quarter_nu, q_e = keep * quarter_e;
-    const REAL q_q = discs ? quarter_q + b * reflected_q : quarter_q;
 
     const REAL equilibrium = ninth * delta_rho + third * (Jux + Juy);
     REAL quarter_S = q_e * (equilibrium + third * delta_rho - S);
@@ -119,24 +151,34 @@ static inline __attribute__((always_inline)) void collide_stream(void *const a[Q
 }
 
 /* In place f_i* goes to the slot that f_opposite(i) was read from. */
-#define ROW(name, discs, owen, force)                                                                                  \
+#define ROW(name, form, adaptive, force)                                                                               \
   static void name(void *const a[Q], int n, const struct sweep_constants *constants, const struct row_cover *cover,    \
                    double sum[2])                                                                                      \
   {                                                                                                                    \
     void *const to[Q] = {a[0], a[3], a[4], a[1], a[2], a[7], a[8], a[5], a[6]};                                        \
-    collide_stream(a, to, n, constants, cover, sum, discs, owen, force);                                               \
+    collide_stream(a, to, n, constants, cover, sum, form, adaptive, force);                                            \
   }
-ROW(sweep_fluid, false, false, false)
-ROW(sweep_fluid_force, false, false, true)
-ROW(sweep_discs_unified, true, false, false)
-ROW(sweep_discs_unified_force, true, false, true)
-ROW(sweep_discs_owen, true, true, false)
-ROW(sweep_discs_owen_force, true, true, true)
+ROW(sweep_fluid, FLUID_ALONE, false, false)
+ROW(sweep_fluid_force, FLUID_ALONE, false, true)
+ROW(sweep_fluid_adaptive, FLUID_ALONE, true, false)
+ROW(sweep_fluid_adaptive_force, FLUID_ALONE, true, true)
+ROW(sweep_discs_unified, FORM_UNIFIED, false, false)
+ROW(sweep_discs_unified_force, FORM_UNIFIED, false, true)
+ROW(sweep_discs_unified_adaptive, FORM_UNIFIED, true, false)
+ROW(sweep_discs_unified_adaptive_force, FORM_UNIFIED, true, true)
+ROW(sweep_discs_owen, FORM_OWEN, false, false)
+ROW(sweep_discs_owen_force, FORM_OWEN, false, true)
+ROW(sweep_discs_owen_adaptive, FORM_OWEN, true, false)
+ROW(sweep_discs_owen_adaptive_force, FORM_OWEN, true, true)
+ROW(sweep_discs_midpoint, FORM_MIDPOINT, false, false)
+ROW(sweep_discs_midpoint_force, FORM_MIDPOINT, false, true)
+ROW(sweep_discs_midpoint_adaptive, FORM_MIDPOINT, true, false)
+ROW(sweep_discs_midpoint_adaptive_force, FORM_MIDPOINT, true, true)
 
 /* The classic kernel, from one array to another: what the in-place one is measured against. */
 static void sweep_two_arrays(void *const from[Q], void *const to[Q], int n, const struct sweep_constants *constants)
 {
-  collide_stream(from, to, n, constants, NULL, NULL, false, false, false);
+  collide_stream(from, to, n, constants, NULL, NULL, FLUID_ALONE, false, false);
 }
 
 extern gather_row KERNEL(gather_row);
@@ -146,9 +188,13 @@ extern const struct sweep_kernel KERNEL(sweep_kernel);
 const struct sweep_kernel KERNEL(sweep_kernel) = {
     .name = VARIANT_NAME,
     .precision = sizeof(REAL) == sizeof(double) ? PRECISION_DOUBLE : PRECISION_SINGLE,
-    .fluid = {sweep_fluid, sweep_fluid_force},
-    .discs = {[FORM_UNIFIED] = {sweep_discs_unified, sweep_discs_unified_force},
-              [FORM_OWEN] = {sweep_discs_owen, sweep_discs_owen_force}},
+    .fluid = {{sweep_fluid, sweep_fluid_force}, {sweep_fluid_adaptive, sweep_fluid_adaptive_force}},
+    .discs = {[FORM_UNIFIED] = {{sweep_discs_unified, sweep_discs_unified_force},
+                                {sweep_discs_unified_adaptive, sweep_discs_unified_adaptive_force}},
+              [FORM_OWEN] = {{sweep_discs_owen, sweep_discs_owen_force},
+                             {sweep_discs_owen_adaptive, sweep_discs_owen_adaptive_force}},
+              [FORM_MIDPOINT] = {{sweep_discs_midpoint, sweep_discs_midpoint_force},
+                                 {sweep_discs_midpoint_adaptive, sweep_discs_midpoint_adaptive_force}}},
     .two_arrays = sweep_two_arrays,
     .gather = KERNEL(gather_row),
     .paint = KERNEL(paint_row),

@@ -14,9 +14,9 @@ static const double scene_most_speed = 0.3;
 
 enum side_name { SIDE_LEFT, SIDE_RIGHT, SIDE_BOTTOM, SIDE_TOP, SIDE_COUNT };
 enum side_type { SIDE_WALL, SIDE_PERIODIC, SIDE_INLET, SIDE_OUTLET };
-enum collision { COLLISION_BGK, COLLISION_TRT, COLLISION_MRT };
+enum collision { COLLISION_BGK, COLLISION_TRT, COLLISION_MRT, COLLISION_ADAPTIVE };
 enum precision { PRECISION_DOUBLE, PRECISION_SINGLE };
-enum coupling_form { FORM_UNIFIED, FORM_OWEN };
+enum coupling_form { FORM_UNIFIED, FORM_OWEN, FORM_MIDPOINT, FORM_COUNT };
 enum coupling_solve { SOLVE_IMPLICIT, SOLVE_EXPLICIT_AVERAGED };
 enum contact_area { AREA_LENS, AREA_CELLS };
 enum contact_search { SEARCH_GRID, SEARCH_LINKED_CELL };
@@ -59,9 +59,10 @@ struct fill_spec {
 
 /* The rates of the one collision kernel (of the paper's (3): s_e = s_eps, s_q, s_nu). */
 struct rates {
-  double nu; /* of pxx and pxy: 1/(3 viscosity + 1/2) */
-  double e;  /* of e and eps */
-  double q;  /* of qx and qy */
+  double nu;     /* of pxx and pxy: 1/(3 viscosity + 1/2) */
+  double e;      /* of e and eps */
+  double q;      /* of qx and qy where fluid rests, or everywhere */
+  double q_fast; /* where its speed is far above viscosity/cell, with the mean of both at that speed; 0: q everywhere */
 };
 
 struct scene {

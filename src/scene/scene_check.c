@@ -107,7 +107,7 @@ static void check_rate_keys(struct draft *draft)
 {
   static const char *const paths[] = {"fluid.rates.e", "fluid.rates.q", "fluid.rates.magic", "fluid.magic"};
   if (!draft_knows(draft, "fluid.collision")) return;
-  enum collision collision = draft->scene.fluid.collision;
+  enum collision collision = draft_collision(draft);
   bool magic = draft_gives(draft, "fluid.magic"), rates_magic = draft_gives(draft, "fluid.rates.magic");
   if (collision == COLLISION_BGK) {
     refuse_if_given(draft, paths, 4, "no such key with collision bgk, whose one rate follows from the viscosity");
@@ -115,6 +115,9 @@ static void check_rate_keys(struct draft *draft)
   }
   if (collision == COLLISION_TRT)
     refuse_if_given(draft, paths, 2, "no such key with collision trt, whose rates follow from viscosity and magic");
+  if (collision == COLLISION_ADAPTIVE)
+    refuse_if_given(draft, &paths[1], 1,
+                    "no such key with collision adaptive, whose rate q follows from magic and speed");
   if (magic && rates_magic) draft_refuse(draft, "fluid.rates.magic", "magic once, here or as fluid.magic");
   if (collision == COLLISION_MRT && (magic || rates_magic) && draft_gives(draft, "fluid.rates.q"))
     draft_refuse(draft, "fluid.rates.q", "q or magic, which sets q, but not both");

@@ -3,18 +3,23 @@
 #include <string.h>
 
 static const double default_magic = 3.0 / 16.0;
+static const double adaptive_magic = 1.0 / 12.0;
 static const double default_density = 1.0;
 
 static void derive_rates(struct draft *draft)
 {
   double viscosity = draft->scene.fluid.viscosity;
-  enum collision collision = draft->scene.fluid.collision;
+  enum collision collision = draft_collision(draft);
   struct rates *rates = &draft->scene.fluid.rates;
+  draft->scene.fluid.collision = collision;
   rates->nu = rate_from_viscosity(viscosity);
-  if (collision != COLLISION_MRT) rates->e = rates->nu;
+  if (collision == COLLISION_BGK || collision == COLLISION_TRT) rates->e = rates->nu;
+  const double fast = rates->q; /* by default the paper's */
   if (collision == COLLISION_BGK) rates->q = rates->nu;
   if (collision == COLLISION_TRT && draft->magic == 0) draft->magic = default_magic;
+  if (collision == COLLISION_ADAPTIVE && draft->magic == 0) draft->magic = adaptive_magic;
   if (draft->magic > 0) rates->q = rate_from_magic(draft->magic, viscosity);
+  if (collision == COLLISION_ADAPTIVE && rates->q < fast) rates->q_fast = fast;
 }
 
 static void derive_densities(struct draft *draft)

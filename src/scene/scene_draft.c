@@ -27,6 +27,12 @@ bool draft_knows(const struct draft *draft, const char *path)
   return !node->refused && (found || !is_required(path));
 }
 
+enum collision draft_collision(const struct draft *draft)
+{
+  if (!draft_gives(draft, "fluid.collision") && draft_gives(draft, "fluid.rates.q")) return COLLISION_MRT;
+  return draft->scene.fluid.collision;
+}
+
 void draft_refuse(struct draft *draft, const char *path, const char *expected, ...)
 {
   char words[512];

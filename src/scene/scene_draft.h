@@ -32,6 +32,9 @@ bool draft_gives(const struct draft *draft, const char *path);
 /* True if the key's value can be relied on: given as the table allows, or left to its default. */
 bool draft_knows(const struct draft *draft, const char *path);
 
+/* fluid.collision as given, or what the other keys imply. */
+enum collision draft_collision(const struct draft *draft);
+
 /* Records an error at the key's place: `got` its value, or that it is missing, and what is expected instead. */
 void draft_refuse(struct draft *draft, const char *path, const char *expected, ...)
     __attribute__((format(printf, 3, 4)));

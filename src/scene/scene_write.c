@@ -31,12 +31,17 @@ static double magic_from_rate(double rate, double viscosity)
   return magic;
 }
 
+/* True where the rate q is written as the magic value that it follows from. */
+static bool has_magic(const struct scene *scene)
+{
+  return scene->fluid.collision == COLLISION_TRT || scene->fluid.collision == COLLISION_ADAPTIVE;
+}
+
 /* A draft with the values of a scene, whose texts and discs it shares. */
 static struct draft draft_from_scene(const struct scene *scene)
 {
   struct draft draft = {.scene = *scene, .title = scene->title ? scene->title : "", .kernel = scene->fluid.kernel};
-  if (scene->fluid.collision == COLLISION_TRT)
-    draft.magic = magic_from_rate(scene->fluid.rates.q, scene->fluid.viscosity);
+  if (has_magic(scene)) draft.magic = magic_from_rate(scene->fluid.rates.q, scene->fluid.viscosity);
   return draft;
 }
 
@@ -47,8 +52,10 @@ static bool is_idle(const struct key *key, const struct scene *scene)
   if (strcmp(key->path, "units.density") == 0) return scene->units.density == 0;
   if (key_within(key->path, "units")) return scene->units.dx == 0;
   if (strcmp(key->path, "fluid.rates.magic") == 0) return true;
-  if (strcmp(key->path, "fluid.magic") == 0) return scene->fluid.collision != COLLISION_TRT;
-  if (key_within(key->path, "fluid.rates")) return scene->fluid.collision != COLLISION_MRT;
+  if (strcmp(key->path, "fluid.magic") == 0) return !has_magic(scene);
+  if (strcmp(key->path, "fluid.rates.q") == 0) return scene->fluid.collision != COLLISION_MRT;
+  if (strcmp(key->path, "fluid.rates.e") == 0)
+    return scene->fluid.collision != COLLISION_MRT && scene->fluid.collision != COLLISION_ADAPTIVE;
   if (strcmp(key->path, "particles.density") == 0) return true;
   if (key_within(key->path, "particles.fill")) return !scene->particles.fill.present;
   return false;

@@ -41,7 +41,7 @@ static void update(const struct flow *f, int parity, int y, int x0, int x1)
   double momentum[2];
   if (parity) boundary_before(&p, f->scene->domain.side, y, x0, x1);
   populations_cells(&p, x0, y, a);
-  f->kernel->fluid[f->force](a, x1 - x0, &f->constants, NULL, momentum);
+  f->kernel->fluid[f->adaptive][f->force](a, x1 - x0, &f->constants, NULL, momentum);
   if (parity) boundary_after(&p, f->scene->domain.side, y, x0, x1);
 }
 

@@ -12,6 +12,7 @@ bool flow_create(struct flow *f, const struct scene *scene, const struct plan *p
   *f = (struct flow){
       .scene = scene,
       .force = plan->force,
+      .adaptive = rates_are_adaptive(&scene->fluid.rates),
       .constants = {.rates = scene->fluid.rates, .force = {scene->fluid.force[0], scene->fluid.force[1]}}};
   const int nx = scene->domain.size[0], ny = scene->domain.size[1];
   f->kernel = sweep_find(scene->fluid.kernel, scene->fluid.precision, status);
@@ -133,12 +134,12 @@ static void sweep_row_at(struct flow *f, int y, const struct sweep_discs *discs)
   void *a[Q];
   populations_cells(&f->populations, 0, y, a);
   if (count == 0) {
-    f->kernel->fluid[f->force](a, nx, &f->constants, NULL, momentum);
+    f->kernel->fluid[f->adaptive][f->force](a, nx, &f->constants, NULL, momentum);
     return;
   }
   struct cover *cover = &f->covers[omp_get_thread_num()];
   f->kernel->paint(&cover->row, nx, runs, count, occupation_band(o, y)->share, discs->exchange->surface);
-  f->kernel->discs[f->scene->coupling.form][f->force](a, nx, &f->constants, &cover->row, momentum);
+  f->kernel->discs[f->scene->coupling.form][f->adaptive][f->force](a, nx, &f->constants, &cover->row, momentum);
 }
 
 /* The uniform force that cancels the mean momentum that this step leaves, along the axes that walls close. */

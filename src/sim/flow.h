@@ -13,6 +13,7 @@ struct flow {
   const struct scene *scene;
   const struct sweep_kernel *kernel;
   bool force;
+  bool adaptive; /* rates */
   struct populations populations;
   struct sweep_constants constants;
   double (*row_momentum)[2]; /* after the sweep, of each row; with a force only */

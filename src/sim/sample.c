@@ -37,7 +37,7 @@ struct rows {
   double *rho, *ux, *uy, *below, *above, *covered;
 };
 
-/* The shares of a cell add up to B = eps c/((1 - eps) + c), c = tau - 1/2: with that, backwards to eps. */
+/* The shares of a cell add up to its weight B: from that, backwards to eps. */
 static void cover_row(const struct occupation *o, int y, double *covered, int nx)
 {
   size_t count = 0;
@@ -45,8 +45,7 @@ static void cover_row(const struct occupation *o, int y, double *covered, int nx
   for (int x = 0; x < nx; x++) covered[x] = 0;
   for (const struct run *run = runs; run < runs + count; run++)
     for (int k = 0; k < run->n; k++) covered[run->x + k] += occupation_band(o, y)->share[run->share + (uint32_t)k];
-  for (int x = 0; count > 0 && x < nx; x++)
-    covered[x] = fmin(1, covered[x] * (1 + o->three_nu) / (covered[x] + o->three_nu));
+  for (int x = 0; count > 0 && x < nx; x++) covered[x] = fmin(1, weight_fraction(o->law, covered[x]));
 }
 
 static void sample_row(const struct sampling *s, const struct rows *rows, int row)

@@ -4,6 +4,8 @@
 #ifndef DELBM_SOLID_AREA_H
 #define DELBM_SOLID_AREA_H
 
+#include "solid/weight.h"
+
 #include <stdint.h>
 
 enum {
@@ -24,8 +26,8 @@ typedef void area_extents(double radius, double x, double y, int first_row, int 
 typedef void area_rows(double radius, double x, double y, int first_row, int from_row, int end_row,
                        const struct area_extents *extents, double *eps);
 
-/* B(eps) (19) of `count` cells. Up to AREA_PAD - 1 elements past them are read and written. */
-typedef void area_weights(const double *eps, int count, double three_nu, double *weight);
+/* The weights B of `count` cells. Up to AREA_PAD - 1 elements past them are read and written. */
+typedef void area_weights(const double *eps, int count, struct weight_law law, double *weight);
 
 struct area_kernel {
   area_extents *extents;

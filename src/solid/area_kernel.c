@@ -207,11 +207,11 @@ static void KERNEL(rows)(double radius, double x, double y, int first_row, int f
     wide_rows(radius, x, &row_lines, from, end, e, eps);
 }
 
-static void KERNEL(weights)(const double *restrict eps, int count, double three_nu, double *restrict weight)
+static void KERNEL(weights)(const double *restrict eps, int count, struct weight_law law, double *restrict weight)
 {
   const int n = whole_vectors(count);
 #pragma omp simd
-  for (int k = 0; k < n; k++) weight[k] = eps[k] * three_nu / ((1 - eps[k]) + three_nu);
+  for (int k = 0; k < n; k++) weight[k] = weight_of(law, eps[k]);
 }
 
 extern const struct area_kernel KERNEL(area_kernel);

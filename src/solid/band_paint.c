@@ -210,7 +210,7 @@ static bool lay_out_shares(struct occupation *o, struct band *band, const struct
       run->share = share;
       if (run->n == 0) continue;
       o->place[draft->candidates[r].place] = r;
-      o->area->weights(draft->eps + draft->candidates[r].cell, run->n, o->three_nu, band->share + share);
+      o->area->weights(draft->eps + draft->candidates[r].cell, run->n, o->law, band->share + share);
       share += (uint32_t)run->n;
     }
   return true;

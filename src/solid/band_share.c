@@ -35,7 +35,7 @@ static void share_cell(struct occupation *o, struct band *band, const struct enc
     owners++;
   }
   if (total <= 0) return;
-  const double weight = occupation_weight(fmin(1, total), o->three_nu) / total;
+  const double weight = weight_of(o->law, fmin(1, total)) / total;
   for (size_t r = e->first; r < end; r++)
     if (covers(&e->row[r], x)) band->share[e->row[r].share + (size_t)(x - e->row[r].x)] = fraction(e, r, x) * weight;
   band->shared_cells++;

@@ -58,7 +58,7 @@ bool occupation_create(struct occupation *o, const struct scene *scene, const st
 {
   *o = (struct occupation){.size = {scene->domain.size[0], scene->domain.size[1]},
                            .periodic = {scene_is_periodic(scene, 0), scene_is_periodic(scene, 1)},
-                           .three_nu = 3 * scene->fluid.viscosity,
+                           .law = weight_law(scene),
                            .reach = reach,
                            .minimum = 0.95,
                            .area = area_find(scene->fluid.kernel),

@@ -1,7 +1,7 @@
 /* Occupation: which cells each disc covers, and how much of them.
  *
  * A disc is convex, so it covers one run of cells in each row. Nothing is as large as the box: a band of rows holds the
- * runs of its own rows, and the shares of B (19) of their cells; the occupation fractions eps, from which these follow,
+ * runs of its own rows, and the shares of the weight B of their cells; the occupation fractions eps, from which these follow,
  * stay in cache while a band is painted. The step then needs,
  * per row, the runs of all discs from left to right:
  *
@@ -26,6 +26,7 @@
 #include "base/team.h"
 #include "lattice/runs.h"
 #include "solid/discs.h"
+#include "solid/weight.h"
 
 enum { BAND_ROWS = 16 };
 
@@ -68,9 +69,9 @@ struct band_draft;
 struct occupation {
   int size[2];
   bool periodic[2];
-  double three_nu; /* tau - 1/2 of (19) */
-  int reach;       /* cells by which runs are widened in the search for pairs, 0 or 1 */
-  double minimum;  /* A_m of (23) */
+  struct weight_law law;
+  int reach;      /* cells by which runs are widened in the search for pairs, 0 or 1 */
+  double minimum; /* A_m of (23) */
   enum pair_search search;
 
   const struct area_kernel *area;
@@ -135,18 +136,6 @@ static inline const struct moment_sums *occupation_sums(const struct occupation 
   *y = o->row[disc] + k;
   const int row = !o->periodic[1] ? *y : *y < 0 ? *y + ny : *y >= ny ? *y - ny : *y;
   return place == no_run || row < 0 || row >= ny ? NULL : &occupation_band(o, row)->sums[place];
-}
-
-/* B of a cell with occupation fraction eps (19). */
-static inline double occupation_weight(double eps, double three_nu)
-{
-  return eps * three_nu / ((1 - eps) + three_nu);
-}
-
-/* The occupation fraction of a cell with weight B, that of all its owners' shares together. */
-static inline double occupation_fraction(double weight, double three_nu)
-{
-  return weight * (1 + three_nu) / (three_nu + weight);
 }
 
 #endif
