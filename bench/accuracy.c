@@ -36,12 +36,14 @@ void accuracy_apply(const struct accuracy_choice *choice, struct scene *scene)
   static const enum collision collisions[] = {COLLISION_BGK, COLLISION_TRT, COLLISION_MRT,
                                               COLLISION_MRT, COLLISION_MRT, COLLISION_ADAPTIVE};
   struct rates *rates = &scene->fluid.rates;
-  scene->fluid.collision = collisions[choice->operator];
+  if (choice->operator!= OPERATOR_ADAPTIVE) scene_use_paper_rates(scene);
   if (choice->operator== OPERATOR_BGK || choice->operator== OPERATOR_TRT) rates->e = rates->nu;
   if (choice->operator== OPERATOR_BGK) rates->q = rates->nu;
   if (choice->operator== OPERATOR_ADAPTIVE) scene_use_adaptive(scene);
-  if (choice->operator== OPERATOR_TRT || choice->operator== OPERATOR_MAGIC) scene_use_magic(scene);
+  if (choice->operator== OPERATOR_TRT || choice->operator== OPERATOR_MAGIC)
+    rates->q = rate_from_magic(3.0 / 16, scene->fluid.viscosity);
   if (choice->operator== OPERATOR_TWELFTH) rates->q = rate_from_magic(1.0 / 12, scene->fluid.viscosity);
+  scene->fluid.collision = collisions[choice->operator];
   scene->fluid.precision = choice->precision;
   scene->coupling.form = choice->form;
   scene->contact.area = choice->area;

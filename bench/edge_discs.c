@@ -74,9 +74,9 @@ static bool map_density(struct edge *edge, struct status *status)
                     .threshold = 0.02};
   map_set_columns(&map, densities, sizeof densities / sizeof densities[0]);
   map_begin(&map, edge->report);
-  for (int k = 0; k < 4; k++) {
-    const enum coupling_form form = k % 2 ? FORM_OWEN : FORM_UNIFIED;
-    const enum coupling_solve solve = k / 2 ? SOLVE_EXPLICIT_AVERAGED : SOLVE_IMPLICIT;
+  for (int k = 0; k < 2 * FORM_COUNT; k++) {
+    const enum coupling_form form = (enum coupling_form)(k % FORM_COUNT);
+    const enum coupling_solve solve = k / FORM_COUNT ? SOLVE_EXPLICIT_AVERAGED : SOLVE_IMPLICIT;
     struct place row[MAP_COLUMNS];
     double expected, speed;
     if (!reference_speed(edge, form, &expected, status)) return false;
@@ -132,19 +132,19 @@ static bool map_radius(struct edge *edge, struct status *status)
                     .threshold = 0.05};
   map_set_columns(&map, radii, sizeof radii / sizeof radii[0]);
   map_begin(&map, edge->report);
-  for (int k = 0; k < 4; k++) {
-    const enum coupling_form form = k % 2 ? FORM_OWEN : FORM_UNIFIED;
+  for (int k = 0; k < 2 * FORM_COUNT; k++) {
+    const enum coupling_form form = (enum coupling_form)(k % FORM_COUNT);
     struct place row[MAP_COLUMNS];
     for (int c = 0; c < map.columns; c++) {
       double worst = 0, drag;
       for (int o = 0; o < 4; o++) {
-        if (!array_drag(edge, radii[c], viscosities[k / 2], form, offsets[o], &drag, status)) return false;
+        if (!array_drag(edge, radii[c], viscosities[k / FORM_COUNT], form, offsets[o], &drag, status)) return false;
         worst = fmax(worst, fabs(drag / dilute_drag(M_PI * radii[c] * radii[c] / 256) - 1));
       }
       row[c] = map_judge(&map, worst, 0);
     }
     char label[MAP_LABEL];
-    snprintf(label, sizeof label, "%s %g", forms[form], viscosities[k / 2]);
+    snprintf(label, sizeof label, "%s %g", forms[form], viscosities[k / FORM_COUNT]);
     map_row(&map, edge->report, label, row, k == 0);
   }
   map_end(edge->report);
@@ -203,7 +203,7 @@ static bool map_spin(struct edge *edge, struct status *status)
                     .threshold = 0.1};
   map_set_columns(&map, spins, sizeof spins / sizeof spins[0]);
   map_begin(&map, edge->report);
-  for (int k = 0; k < 2; k++) {
+  for (int form = 0; form < FORM_COUNT; form++) {
     struct place row[MAP_COLUMNS];
     for (int c = 0; c < map.columns; c++) {
       struct scene scene = scene_box(60, 60, 0.05, SIDES_PERIODIC);
@@ -211,14 +211,14 @@ static bool map_spin(struct edge *edge, struct status *status)
       struct edge_run run = {.steps = edge->report->quick ? 1000 : 100000, .every = 1000, .watch = go_on};
       disc->motion = DISC_FIXED;
       disc->spin = spins[c];
-      scene.coupling.form = k ? FORM_OWEN : FORM_UNIFIED;
+      scene.coupling.form = (enum coupling_form)form;
       const bool ok = edge_run(edge, &scene, &run, status);
       scene_clear(&scene);
       if (!ok) return false;
       const double excess = run.last.max_mach / (sqrt(3) * 10 * spins[c]) - 1;
       row[c] = run.diverged ? map_diverged(run.end) : map_judge(&map, excess, run.end);
     }
-    map_row(&map, edge->report, forms[k ? FORM_OWEN : FORM_UNIFIED], row, k == 0);
+    map_row(&map, edge->report, forms[form], row, form == 0);
   }
   map_end(edge->report);
   return true;

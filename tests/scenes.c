@@ -3,6 +3,29 @@
 #include <math.h>
 #include <stdlib.h>
 
+static void use_mrt(struct scene *scene, double q)
+{
+  scene->fluid.collision = COLLISION_MRT;
+  scene->fluid.rates = (struct rates){.nu = rate_from_viscosity(scene->fluid.viscosity), .e = 1.4, .q = q};
+}
+
+void scene_use_paper_rates(struct scene *scene)
+{
+  use_mrt(scene, 1.2);
+}
+
+void scene_use_magic(struct scene *scene)
+{
+  use_mrt(scene, rate_from_magic(3.0 / 16, scene->fluid.viscosity));
+}
+
+void scene_use_adaptive(struct scene *scene)
+{
+  use_mrt(scene, rate_from_magic(1.0 / 12, scene->fluid.viscosity));
+  scene->fluid.collision = COLLISION_ADAPTIVE;
+  if (scene->fluid.rates.q < 1.2) scene->fluid.rates.q_fast = 1.2;
+}
+
 struct scene scene_box(int nx, int ny, double viscosity, enum sides sides)
 {
   struct scene scene = {0};
@@ -10,27 +33,14 @@ struct scene scene_box(int nx, int ny, double viscosity, enum sides sides)
   scene.domain.size[1] = ny;
   for (int k = 0; k < SIDE_COUNT; k++) scene.domain.side[k].type = sides == SIDES_PERIODIC ? SIDE_PERIODIC : SIDE_WALL;
   scene.fluid.viscosity = viscosity;
-  scene.fluid.collision = COLLISION_MRT;
-  scene.fluid.rates = (struct rates){.nu = rate_from_viscosity(viscosity), .e = 1.4, .q = 1.2};
-  scene.coupling.form = FORM_OWEN;
+  scene_use_adaptive(&scene);
+  scene.coupling.form = FORM_MIDPOINT;
   scene.contact.stiffness = 0.25;
   scene.contact.alpha = 0.3;
   scene.contact.damping = 0.34;
   scene.contact.steps_per_contact = 20;
   scene.run.check = 50;
   return scene;
-}
-
-void scene_use_magic(struct scene *scene)
-{
-  scene->fluid.rates.q = rate_from_magic(3.0 / 16, scene->fluid.viscosity);
-}
-
-void scene_use_adaptive(struct scene *scene)
-{
-  scene->fluid.collision = COLLISION_ADAPTIVE;
-  scene->fluid.rates.q = rate_from_magic(1.0 / 12, scene->fluid.viscosity);
-  scene->fluid.rates.q_fast = scene->fluid.rates.q < 1.2 ? 1.2 : 0;
 }
 
 struct disc_spec *scene_add_disc(struct scene *scene, double radius, double density, double x, double y)

@@ -9,7 +9,10 @@ enum sides { SIDES_PERIODIC, SIDES_CLOSED };
 /* A box of fluid at rest with the program's defaults: mrt 1.4/1.2, owen, implicit, lens, no discs, no forces. */
 struct scene scene_box(int nx, int ny, double viscosity, enum sides sides);
 
-/* Sets s_q from the magic parameter 3/16. */
+/* The paper's rates: s_e = 1.4, s_q = 1.2. */
+void scene_use_paper_rates(struct scene *scene);
+
+/* s_e = 1.4 and s_q from the magic parameter 3/16. */
 void scene_use_magic(struct scene *scene);
 
 /* The default: s_q from 1/12 in slow fluid, 1.2 in fast. */

@@ -66,7 +66,7 @@ Test(blocked, any_depth_width_and_number_of_threads_gives_the_bits_of_single_ste
     for (int way = 0; way < 4; way++) {
       struct scene scene = stirred_box(NX, NY, sides);
       if (way % 2) scene.fluid.force[0] = 1e-4;
-      if (way / 2) scene_use_adaptive(&scene);
+      if (way / 2) scene_use_paper_rates(&scene);
       const struct blocking none = {.depth = 0};
       populations_after(&scene, &none, 1, expected);
       for (size_t d = 0; d < sizeof depths / sizeof depths[0]; d++)
