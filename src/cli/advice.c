@@ -11,9 +11,8 @@ static void advise_rates(const struct scene *scene)
   const struct rates *rates = &scene->fluid.rates;
   if (scene->fluid.collision == COLLISION_MRT && rates->q < 0.25 && fabs(rates->e - rates->nu) > 0.1)
     printf(
-        "  note: s_q %.3g beside s_e %.3g diverges first of all choices at small viscosity; collision: trt has the "
-        "same magic parameter and goes farther, the rates 1.4 and 1.2 farthest where there are discs (bench/README.md, "
-        "stability)\n",
+        "  note: s_q %.3g beside s_e %.3g diverges first of all choices at small viscosity; collision: adaptive is as "
+        "accurate in slow flow and goes as far as any (bench/README.md, stability)\n",
         rates->q, rates->e);
   else if (scene->fluid.viscosity < 0.001)
     printf("  note: viscosity below 0.001; no collision operator is reliable there above Mach 0.2 (bench/README.md, "
@@ -33,6 +32,16 @@ static void advise_solve(const struct scene *scene)
         i, disc->density);
     return;
   }
+}
+
+/* Benchmark `drag`: errors of a square array grow with viscosity and with 1/R in the paper's form. */
+static void advise_form(const struct scene *scene)
+{
+  double smallest = INFINITY;
+  for (size_t i = 0; i < scene->particles.count; i++) smallest = fmin(smallest, scene->particles.discs[i].radius);
+  if (scene->coupling.form == FORM_UNIFIED && scene->fluid.viscosity >= 0.05 && smallest <= 10)
+    printf("  note: form: unified has 6 %% too little drag on discs of R = 5 at viscosity 0.05 and 13 %% at 1/6; form: "
+           "midpoint is within 1 %% at any viscosity (bench/README.md, drag)\n");
 }
 
 /* Map "fixed disc that spins". */
@@ -102,6 +111,7 @@ void print_advice(const struct scene *scene)
   advise_rates(scene);
   if (scene->particles.count == 0) return;
   advise_solve(scene);
+  advise_form(scene);
   advise_spin(scene);
   advise_weight(scene);
   advise_substeps(scene);
