@@ -6,7 +6,7 @@
 
 enum sides { SIDES_PERIODIC, SIDES_CLOSED };
 
-/* A box of fluid at rest with the program's defaults: mrt 1.4/1.2, owen, implicit, lens, no discs, no forces. */
+/* A box of fluid at rest with the program's defaults, with no discs and no forces. */
 struct scene scene_box(int nx, int ny, double viscosity, enum sides sides);
 
 /* The paper's rates: s_e = 1.4, s_q = 1.2. */

@@ -87,7 +87,7 @@ static void spread(const struct painting *p, size_t disc, double *cells)
   paint(&alone);
   spread_shares(&alone, 0, cells);
   for (int k = 0; k < p->scene.domain.size[0] * p->scene.domain.size[1]; k++)
-    cells[k] = weight_fraction(alone.occupation.law, cells[k]);
+    cells[k] = weight_fraction(occupation_law(&alone.occupation, 0), cells[k]);
   alone.scene = (struct scene){0}; /* is p's */
   end(&alone);
 }

@@ -53,7 +53,7 @@ static void advise_spin(const struct scene *scene)
     if (disc->motion == DISC_FREE || disc->spin == 0) continue;
     printf("  note: with form: owen the fluid inside disc %zu, which is made to spin, gains until the run diverges (R "
            "= 10, "
-           "spin 0.004: in 28,700 steps); form: unified does not (bench/README.md, stability)\n",
+           "spin 0.004: in 28,700 steps); form: midpoint does not (bench/README.md, stability)\n",
            i);
     return;
   }

@@ -32,20 +32,27 @@ struct sampling {
   bool periodic[2];
 };
 
-/* Buffers of one thread, of nx each: density and velocity of a row, ux of the rows beside it, what covers it. */
+/* Buffers of one thread, of nx each: density and velocity of a row, ux of the rows beside it, what covers it, and how much
+ * that gives. */
 struct rows {
-  double *rho, *ux, *uy, *below, *above, *covered;
+  double *rho, *ux, *uy, *below, *above, *covered, *give;
 };
 
 /* The shares of a cell add up to its weight B: from that, backwards to eps. */
-static void cover_row(const struct occupation *o, int y, double *covered, int nx)
+static void cover_row(const struct occupation *o, int y, const struct rows *rows, int nx)
 {
   size_t count = 0;
   const struct run *runs = o ? occupation_row(o, y, &count) : NULL;
-  for (int x = 0; x < nx; x++) covered[x] = 0;
+  double *covered = rows->covered, *give = rows->give;
+  for (int x = 0; x < nx; x++) covered[x] = give[x] = 0;
   for (const struct run *run = runs; run < runs + count; run++)
-    for (int k = 0; k < run->n; k++) covered[run->x + k] += occupation_band(o, y)->share[run->share + (uint32_t)k];
-  for (int x = 0; count > 0 && x < nx; x++) covered[x] = fmin(1, weight_fraction(o->law, covered[x]));
+    for (int k = 0; k < run->n; k++) {
+      const int x = run->x + k;
+      covered[x] += occupation_band(o, y)->share[run->share + (uint32_t)k];
+      give[x] = fmax(give[x], o->give[run->disc]);
+    }
+  for (int x = 0; count > 0 && x < nx; x++)
+    covered[x] = fmin(1, weight_fraction(occupation_law(o, give[x]), covered[x]));
 }
 
 static void sample_row(const struct sampling *s, const struct rows *rows, int row)
@@ -56,7 +63,7 @@ static void sample_row(const struct sampling *s, const struct rows *rows, int ro
   diagnostics_row(p, s->force, y, rows->rho, rows->ux, rows->uy);
   diagnostics_row(p, s->force, v.low, NULL, rows->below, NULL);
   diagnostics_row(p, s->force, v.high, NULL, rows->above, NULL);
-  cover_row(s->occupation, y, rows->covered, p->nx);
+  cover_row(s->occupation, y, rows, p->nx);
   for (int k = 0; k < s->grid->count[0]; k++) {
     const int x = s->grid->first[0] + k * s->grid->stride;
     const size_t at = (size_t)row * (size_t)s->grid->count[0] + (size_t)k;
@@ -77,7 +84,7 @@ bool sample_take(struct populations *p, const struct side side[SIDE_COUNT], cons
                  const struct occupation *occupation, const struct sample_grid *grid, const struct sample *sample,
                  struct status *status)
 {
-  enum { BUFFERS = 6 };
+  enum { BUFFERS = 7 };
   const struct sampling sampling = {
       p,    force,  occupation,
       grid, sample, {side[SIDE_LEFT].type == SIDE_PERIODIC, side[SIDE_BOTTOM].type == SIDE_PERIODIC}};
@@ -88,7 +95,7 @@ bool sample_take(struct populations *p, const struct side side[SIDE_COUNT], cons
 #pragma omp parallel num_threads(threads)
   {
     double *own = buffers + (size_t)omp_get_thread_num() * BUFFERS * nx;
-    const struct rows rows = {own, own + nx, own + 2 * nx, own + 3 * nx, own + 4 * nx, own + 5 * nx};
+    const struct rows rows = {own, own + nx, own + 2 * nx, own + 3 * nx, own + 4 * nx, own + 5 * nx, own + 6 * nx};
 #pragma omp for schedule(static)
     for (int y = 0; y < p->ny; y++)
       if (p->parity) boundary_before_row(p, side, y);

@@ -210,7 +210,8 @@ static bool lay_out_shares(struct occupation *o, struct band *band, const struct
       run->share = share;
       if (run->n == 0) continue;
       o->place[draft->candidates[r].place] = r;
-      o->area->weights(draft->eps + draft->candidates[r].cell, run->n, o->law, band->share + share);
+      o->area->weights(draft->eps + draft->candidates[r].cell, run->n, occupation_law(o, o->give[run->disc]),
+                       band->share + share);
       share += (uint32_t)run->n;
     }
   return true;

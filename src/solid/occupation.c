@@ -23,7 +23,7 @@ static double most_cells(double radius)
 double occupation_bytes(const struct scene *scene)
 {
   const size_t row = sizeof(struct run) + sizeof(struct moment_sums) + 2 * sizeof(size_t);
-  const size_t disc = 2 * sizeof(double) + 5 * sizeof(int32_t) + sizeof(size_t) + 2 * sizeof(uint32_t) + 1;
+  const size_t disc = 3 * sizeof(double) + 5 * sizeof(int32_t) + sizeof(size_t) + 2 * sizeof(uint32_t) + 1;
   double bytes = 0;
   for (size_t i = 0; i < scene->particles.count; i++) {
     const double radius = scene->particles.discs[i].radius;
@@ -38,6 +38,7 @@ static bool allocate(struct occupation *o, size_t rows, struct status *status)
   const size_t n = o->discs, bands = (size_t)o->band_count;
   return (o->x = memory_allocate(n, sizeof *o->x, what, status)) &&
          (o->y = memory_allocate(n, sizeof *o->y, what, status)) &&
+         (o->give = memory_allocate(n, sizeof *o->give, what, status)) &&
          (o->column = memory_allocate(n, sizeof *o->column, what, status)) &&
          (o->row = memory_allocate(n, sizeof *o->row, what, status)) &&
          (o->rows = memory_allocate(n, sizeof *o->rows, what, status)) &&
@@ -58,7 +59,8 @@ bool occupation_create(struct occupation *o, const struct scene *scene, const st
 {
   *o = (struct occupation){.size = {scene->domain.size[0], scene->domain.size[1]},
                            .periodic = {scene_is_periodic(scene, 0), scene_is_periodic(scene, 1)},
-                           .law = weight_law(scene),
+                           .form = scene->coupling.form,
+                           .viscosity = scene->fluid.viscosity,
                            .reach = reach,
                            .minimum = 0.95,
                            .area = area_find(scene->fluid.kernel),
@@ -94,23 +96,25 @@ void occupation_destroy(struct occupation *o)
     free(o->drafts[t].candidates);
     free(o->drafts[t].eps);
   }
-  void *const arrays[] = {o->x,          o->y,        o->column,    o->row,     o->rows,  o->moved,
-                          o->was_row,    o->was_rows, o->first_row, o->place,   o->order, o->band_start,
-                          o->band_discs, o->stale,    o->bands,     o->batches, o->drafts};
+  void *const arrays[] = {o->x,          o->y,          o->give,     o->column,    o->row,     o->rows,
+                          o->moved,      o->was_row,    o->was_rows, o->first_row, o->place,   o->order,
+                          o->band_start, o->band_discs, o->stale,    o->bands,     o->batches, o->drafts};
   for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; k++) free(arrays[k]);
   *o = (struct occupation){0};
 }
 
-/* Notes where disc i is now. Rows that lie in no band keep no_run. */
+/* Notes where disc i is now, and how it spins. Rows that lie in no band keep no_run. */
 static void settle(struct occupation *o, const struct discs *discs, size_t i)
 {
   const double radius = discs->radius[i], x = discs->x[i], y = discs->y[i];
-  o->moved[i] = !(o->painted && o->x[i] == x && o->y[i] == y);
+  const double give = weight_give(o->form, radius, discs->omega[i]);
+  o->moved[i] = !(o->painted && o->x[i] == x && o->y[i] == y && o->give[i] == give);
   if (!o->moved[i]) return;
   o->was_row[i] = o->row[i];
   o->was_rows[i] = o->rows[i];
   o->x[i] = x;
   o->y[i] = y;
+  o->give[i] = give;
   o->column[i] = (int)floor(x - radius);
   o->row[i] = (int)floor(y - radius);
   o->rows[i] = (int)ceil(y + radius) - o->row[i];

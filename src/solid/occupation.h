@@ -69,7 +69,8 @@ struct band_draft;
 struct occupation {
   int size[2];
   bool periodic[2];
-  struct weight_law law;
+  enum coupling_form form;
+  double viscosity;
   int reach;      /* cells by which runs are widened in the search for pairs, 0 or 1 */
   double minimum; /* A_m of (23) */
   enum pair_search search;
@@ -79,6 +80,7 @@ struct occupation {
   size_t discs;
   bool painted;                /* at least once */
   double *x, *y;               /* centre of each disc when it was painted */
+  double *give;                /* and its give (weight.h) */
   int32_t *column;             /* of its leftmost cell, before wrapping */
   int32_t *row, *rows;         /* its lowest cell, and how many rows it covers */
   uint8_t *moved;              /* since it was last painted */
@@ -125,6 +127,12 @@ static inline const struct run *occupation_row(const struct occupation *o, int y
   const size_t start = band->row_start[y % BAND_ROWS];
   *count = band->row_end[y % BAND_ROWS] - start;
   return band->runs + start;
+}
+
+/* Of cells whose owners give by at most this. */
+static inline struct weight_law occupation_law(const struct occupation *o, double give)
+{
+  return weight_law(o->form, o->viscosity, give);
 }
 
 /* The sums of one piece of the disc's row k, and that row before wrapping; NULL where nothing of it lies in the box. */
