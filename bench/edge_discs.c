@@ -22,6 +22,12 @@ static struct scene falling(double density, enum coupling_form form, enum coupli
   return scene;
 }
 
+/* Enough for the disc to regain what it loses at first to fluid at rest. */
+static int64_t steps_to_fall(const struct edge *edge, double density)
+{
+  return (int64_t)((edge->report->quick ? 500 : 20000) * fmin(10, fmax(1, density / 20)));
+}
+
 static bool go_on(struct simulation *simulation, void *context)
 {
   (void)simulation;
@@ -82,7 +88,7 @@ static bool map_density(struct edge *edge, struct status *status)
     if (!reference_speed(edge, form, &expected, status)) return false;
     for (int c = 0; c < map.columns; c++) {
       struct scene scene = falling(densities[c], form, solve, expected);
-      struct edge_run run = {.steps = edge->report->quick ? 500 : 20000, .every = 25};
+      struct edge_run run = {.steps = steps_to_fall(edge, densities[c]), .every = 25};
       if (!terminal_speed(edge, &scene, &run, &speed, status)) return false;
       row[c] = run.diverged ? map_diverged(run.end) : map_judge(&map, fabs(speed / expected - 1), run.end);
     }

@@ -1,7 +1,7 @@
 # The maps as pictures. Usage: gnuplot -c bench/stability.gp REPORT.json PICTURE.png
 # The report is that of `delbm bench stability --json`: one row of a map a line.
 if (ARGC != 2) { print "usage: gnuplot -c bench/stability.gp REPORT.json PICTURE.png"; exit status 2 }
-set terminal pngcairo size 1400, 1250 font "sans,9" noenhanced
+set terminal pngcairo size 1400, 1500 font "sans,9" noenhanced
 set output ARG2
 # x, y, verdict (0 completed, 1 inaccurate, 2 diverged), label of the column, label of the row
 places(map) = sprintf("< awk -v map='\"%s\": {' '" . \
@@ -15,12 +15,12 @@ set key off
 set offsets 0.6, 0.6, 0.6, 0.6
 set tics scale 0
 set xtics rotate by 45 right
-draw(map, corner) = sprintf("set title '%s'; set xlabel '%s'; plot places('%s') using 1:2:3:xtic(4):ytic(5) with points pointtype 5 pointsize 2.6 linecolor palette", map, corner, map)
-set multiplot layout 4, 4 title "Stability. Green: completed, amber: inaccurate, red: diverged. Rows: viscosity, or as the title says"
-do for [operator in '"bgk" "trt 3/16" "mrt 1.4 1.2" "mrt s_nu 1.2" "mrt 1.4 magic 3/16"'] {
+draw(map, corner) = sprintf("set title '%s'; set xlabel '%s'; plot places('%s') using 1:2:3:xtic(4):ytic(5) with points pointtype 5 pointsize 2.4 linecolor palette", map, corner, map)
+set multiplot layout 5, 4 title "Stability. Green: completed, amber: inaccurate, red: diverged. Rows: viscosity, or as the title says"
+do for [operator in '"bgk" "trt 3/16" "mrt 1.4 1.2" "mrt s_nu 1.2" "mrt 1.4 magic 3/16" "adaptive"'] {
   eval draw("shear layer, " . operator, "Mach number")
 }
-do for [operator in '"bgk" "trt 3/16" "mrt 1.4 1.2" "mrt s_nu 1.2" "mrt 1.4 magic 3/16"'] {
+do for [operator in '"bgk" "trt 3/16" "mrt 1.4 1.2" "mrt s_nu 1.2" "mrt 1.4 magic 3/16" "adaptive"'] {
   eval draw("driven disc, " . operator, "Mach number")
 }
 eval draw("density of a settling disc", "density")
