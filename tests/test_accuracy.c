@@ -107,6 +107,7 @@ Test(order, is_two_for_poiseuille_flow_with_every_operator_that_is_not_exact)
   check_order(&accuracy_poiseuille, OPERATOR_BGK, 8);
   check_order(&accuracy_poiseuille, OPERATOR_MRT, 8);
   check_order(&accuracy_poiseuille, OPERATOR_TWELFTH, 8);
+  check_order(&accuracy_poiseuille, OPERATOR_ADAPTIVE, 8);
 }
 
 Test(order, is_two_for_a_wall_that_starts_to_move)

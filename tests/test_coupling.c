@@ -318,6 +318,19 @@ Test(stability, a_disc_held_and_spinning_at_mach_a_quarter_turns_its_fluid_with_
   }
 }
 
+/* Reynolds number 460 at Mach 0.1, where the rates that are best for slow flow diverge by step 450. */
+Test(stability, fast_fluid_at_small_viscosity_is_held_by_the_default_rates)
+{
+  struct scene scene = scene_box(160, 80, 0.002, SIDES_PERIODIC);
+  struct disc_spec *disc = scene_add_disc(&scene, 8, 1, 80, 40.2);
+  disc->motion = DISC_DRIVEN;
+  disc->velocity[0] = 0.1 / sqrt(3);
+  struct simulation *simulation = start(&scene);
+  advance(simulation, 2770);
+  simulation_destroy(simulation);
+  scene_clear(&scene);
+}
+
 Test(stability, explicit_coupling_of_a_light_disc_diverges_and_says_so_soon)
 {
   struct scene scene = scene_box(64, 64, 0.05, SIDES_CLOSED);
