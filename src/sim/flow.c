@@ -115,7 +115,8 @@ void flow_set(struct flow *f, const double *density, const double *ux, const dou
 bool flow_store(struct flow *f, struct store *store, struct status *status)
 {
   return populations_store(&f->populations, store, status) &&
-         store_bytes(store, f->constants.uniform, sizeof f->constants.uniform, status);
+         store_bytes(store, f->constants.uniform, sizeof f->constants.uniform, status) &&
+         store_bytes(store, f->mean_momentum, sizeof f->mean_momentum, status);
 }
 
 void stage_boundary(struct flow *f)
@@ -142,7 +143,9 @@ static void sweep_row_at(struct flow *f, int y, const struct sweep_discs *discs)
   f->kernel->discs[f->scene->coupling.form][f->adaptive][f->force](a, nx, &f->constants, &cover->row, momentum);
 }
 
-/* The uniform force that cancels the mean momentum that this step leaves, along the axes that walls close. */
+/* The uniform force that cancels the mean momentum that this step and the one before leave, along the axes that walls
+ * close. Of one step alone it would feed what changes its sign every step: a disc at rest on the ground then shook harder
+ * and harder, until in some ten thousand steps the run diverged. */
 static void cancel_flux(struct flow *f)
 {
   double sum[2] = {0, 0};
@@ -151,8 +154,11 @@ static void cancel_flux(struct flow *f)
     sum[1] += f->row_momentum[y][1];
   }
   const double cells = (double)f->populations.nx * f->populations.ny;
-  for (int axis = 0; axis < 2; axis++)
-    f->constants.uniform[axis] = scene_is_closed(f->scene, axis) ? -sum[axis] / cells : 0;
+  for (int axis = 0; axis < 2; axis++) {
+    const double mean = sum[axis] / cells;
+    f->constants.uniform[axis] = scene_is_closed(f->scene, axis) ? -(mean + f->mean_momentum[axis]) / 2 : 0;
+    f->mean_momentum[axis] = mean;
+  }
 }
 
 /* Takes the moments of row y, about to be collided in the state `p`, for the discs that cover it. */

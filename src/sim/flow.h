@@ -17,6 +17,7 @@ struct flow {
   struct populations populations;
   struct sweep_constants constants;
   double (*row_momentum)[2]; /* after the sweep, of each row; with a force only */
+  double mean_momentum[2];   /* with zero_flux: what the last step left, a cell */
   struct cover *covers;      /* of each thread */
   int threads;
   bool ghosts_filled; /* of all rows, by the last sweep */
