@@ -331,6 +331,24 @@ Test(stability, fast_fluid_at_small_viscosity_is_held_by_the_default_rates)
   scene_clear(&scene);
 }
 
+/* In fluid kept without net flux, as gravity in a closed box is by default. */
+Test(stability, a_disc_on_the_ground_comes_to_rest_and_the_contact_carries_its_weight)
+{
+  struct scene scene = scene_box(60, 60, 0.05, SIDES_CLOSED);
+  scene_add_disc(&scene, 10, 1.01, 30.3, 11);
+  scene.fluid.zero_flux = true;
+  scene.particles.gravity[1] = -0.0245;
+  struct simulation *simulation = start(&scene);
+  advance(simulation, 25000);
+  const struct discs *d = simulation_discs(simulation);
+  const double weight = (d->mass[0] - d->fluid_mass[0]) * 0.0245;
+  cr_expect_float_eq(d->contact_fy[0], weight, 0.001 * weight, "%g of %g", d->contact_fy[0], weight);
+  for (int step = 0; step < 2; step++, advance(simulation, 1))
+    cr_expect_lt(hypot(d->vx[0], d->vy[0]), 1e-7, "moves at %g", hypot(d->vx[0], d->vy[0]));
+  simulation_destroy(simulation);
+  scene_clear(&scene);
+}
+
 Test(stability, explicit_coupling_of_a_light_disc_diverges_and_says_so_soon)
 {
   struct scene scene = scene_box(64, 64, 0.05, SIDES_CLOSED);

@@ -193,11 +193,22 @@ static bool make_room(struct occupation *o, int index, const struct discs *discs
          memory_grow(&band->sums, &band->sums_capacity, total, sizeof *band->sums, "a band's sums", status);
 }
 
-/* The shares of the band's cells, as if each had one owner. What a kernel writes past the end of a run is overwritten by
- * the next. */
-static bool lay_out_shares(struct occupation *o, struct band *band, const struct band_draft *draft, size_t cells,
+/* The shares of a run of row y, whose cells are taken to have one owner. What a kernel writes past the end of a run is
+ * overwritten by the next. */
+static void lay_out_run(const struct occupation *o, const struct run *run, int y, const double *eps, double *share)
+{
+  const double give = o->give[run->disc];
+  const int last = run->n - 1;
+  o->area->weights(eps, run->n, occupation_law(o, give, occupation_row_at_side(o, y)), share);
+  if (o->periodic[0] || (run->x > 0 && run->x + last < o->size[0] - 1)) return;
+  if (occupation_at_side(o, run->x, y)) share[0] = weight_of(occupation_law(o, give, true), eps[0]);
+  if (occupation_at_side(o, run->x + last, y)) share[last] = weight_of(occupation_law(o, give, true), eps[last]);
+}
+
+static bool lay_out_shares(struct occupation *o, int index, const struct band_draft *draft, size_t cells,
                            struct status *status)
 {
+  struct band *band = &o->bands[index];
   uint32_t share = 0;
   if (cells > UINT32_MAX - SLACK)
     return status_fail(status, DELBM_FAILED, "%zu covered cells in %d rows are more than a band can hold", cells,
@@ -210,8 +221,7 @@ static bool lay_out_shares(struct occupation *o, struct band *band, const struct
       run->share = share;
       if (run->n == 0) continue;
       o->place[draft->candidates[r].place] = r;
-      o->area->weights(draft->eps + draft->candidates[r].cell, run->n, occupation_law(o, o->give[run->disc]),
-                       band->share + share);
+      lay_out_run(o, run, index * BAND_ROWS + k, draft->eps + draft->candidates[r].cell, band->share + share);
       share += (uint32_t)run->n;
     }
   return true;
@@ -229,5 +239,5 @@ bool band_paint(struct occupation *o, int index, const struct discs *discs, stru
       if (stretch_of(o, discs, index, o->band_discs[d], image, &s) &&
           !paint_stretch(o, band, draft, discs, &s, &cells, status))
         return false;
-  return lay_out_shares(o, band, draft, cells, status);
+  return lay_out_shares(o, index, draft, cells, status);
 }

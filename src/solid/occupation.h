@@ -129,10 +129,22 @@ static inline const struct run *occupation_row(const struct occupation *o, int y
   return band->runs + start;
 }
 
-/* Of cells whose owners give by at most this. */
-static inline struct weight_law occupation_law(const struct occupation *o, double give)
+/* Whether row y, or cell (x, y), lies next to a side that discs cannot leave through. */
+static inline bool occupation_row_at_side(const struct occupation *o, int y)
 {
-  return weight_law(o->form, o->viscosity, give);
+  return !o->periodic[1] && (y == 0 || y == o->size[1] - 1);
+}
+
+static inline bool occupation_at_side(const struct occupation *o, int x, int y)
+{
+  return (!o->periodic[0] && (x == 0 || x == o->size[0] - 1)) || occupation_row_at_side(o, y);
+}
+
+/* Of cells whose owners give by at most this; `between`: a disc and another, or a side. */
+static inline struct weight_law occupation_law(const struct occupation *o, double give, bool between)
+{
+  const double least = between ? weight_give_between(o->form) : 0;
+  return weight_law(o->form, o->viscosity, give > least ? give : least);
 }
 
 /* The sums of one piece of the disc's row k, and that row before wrapping; NULL where nothing of it lies in the box. */

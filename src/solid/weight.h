@@ -9,7 +9,8 @@
  * Give. Where B = 1 populations are only exchanged with those opposite, and nothing damps what streams to and fro between
  * two cells. The rim of a disc that spins in its place drives such modes, and its velocity gradient lets them grow until
  * the run diverges. So a spinning disc is not wholly solid inside: it gives by the square of the speed of its rim, which
- * nobody sees in slow flow. */
+ * nobody sees in slow flow. And where a disc meets another or a wall, fluid caught between them could never leave, and
+ * would carry for ever what weighs on it in place of the contact: the cells that both cover, or next to the wall, give. */
 #ifndef DELBM_SOLID_WEIGHT_H
 #define DELBM_SOLID_WEIGHT_H
 
@@ -26,6 +27,12 @@ static inline double weight_give(enum coupling_form form, double radius, double 
 {
   const double rim = radius * omega;
   return form == FORM_MIDPOINT ? 4 * rim * rim : 0;
+}
+
+/* That of cells between a disc and what it meets: fluid caught there leaves within some 10,000 steps (R = 10). */
+static inline double weight_give_between(enum coupling_form form)
+{
+  return form == FORM_MIDPOINT ? 0.05 : 0;
 }
 
 static inline struct weight_law weight_law(enum coupling_form form, double viscosity, double give)
