@@ -438,6 +438,115 @@ Test(impact, with_damping_kinetic_energy_never_grows)
   }
 }
 
+/* Two discs of radius 5 that meet head on in a fluid that matters. */
+static struct scene wet_scene(double density, double stiffness, double gap)
+{
+  struct scene scene = scene_box(64, 40, 0.01, SIDES_PERIODIC);
+  scene.contact.damping = 0;
+  scene.contact.stiffness = stiffness;
+  for (int k = 0; k < 2; k++)
+    scene_add_disc(&scene, 5, density, 32.3 + (k - 0.5) * (10 + gap), 20)->velocity[0] = k ? -0.05 : 0.05;
+  return scene;
+}
+
+/* Energy of motion, of the discs and of all fluid, and of the fluid's compression. */
+static double energy_of(struct simulation *simulation)
+{
+  enum { CELLS = 64 * 40 };
+  double density[CELLS], ux[CELLS], uy[CELLS], energy = 0;
+  const struct discs *d = simulation_discs(simulation);
+  simulation_fields(simulation, density, ux, uy);
+  for (int k = 0; k < CELLS; k++) {
+    const double excess = density[k] - 1;
+    energy += density[k] * (ux[k] * ux[k] + uy[k] * uy[k]) / 2 + excess * excess / 6;
+  }
+  for (size_t k = 0; k < d->count; k++)
+    energy += (d->mass[k] - d->fluid_mass[k]) * (d->vx[k] * d->vx[k] + d->vy[k] * d->vy[k]) / 2;
+  return energy;
+}
+
+static void check_wet_impact(double density, double stiffness, double gap)
+{
+  struct status status;
+  struct scene scene = wet_scene(density, stiffness, gap);
+  struct simulation *simulation;
+  double approach = 0.1, push = 0, energy, fastest = 0, most = 0;
+  omp_set_num_threads(1);
+  cr_assert(simulation_create(&simulation, &scene, &status), "%s", status.message);
+  const struct discs *d = simulation_discs(simulation);
+  do {
+    push = approach - (d->vx[0] - d->vx[1]); /* of the fluid between them, in a step */
+    approach = d->vx[0] - d->vx[1];
+    energy = energy_of(simulation);
+    advance(simulation, 1);
+  } while (d->contact_fx[0] == 0 && simulation_step(simulation) < 500);
+  for (int step = 0; step < 30; step++) {
+    fastest = fmax(fastest, d->vx[1] - d->vx[0]);
+    most = fmax(most, energy_of(simulation));
+    advance(simulation, 1);
+  }
+  /* the fluid pushes within the step, too; and a sub-step may add what check_impact allows */
+  cr_expect(fastest > 0 && fastest <= 1.003 * approach + push,
+            "density %g, stiffness %g, gap %g: part at %g, met at %g, fluid gives %g", density, stiffness, gap, fastest,
+            approach, push);
+  cr_expect_leq(most, 1.0062 * energy, "density %g, stiffness %g, gap %g: energy %g, was %g", density, stiffness, gap,
+                most, energy);
+  simulation_destroy(simulation);
+  scene_clear(&scene);
+}
+
+/* The fluid inside must not lend a contact energy that is shorter than a step. */
+Test(impact, in_fluid_without_damping_no_energy_is_gained_at_any_stiffness)
+{
+  static const double densities[] = {2, 5, 20};
+  for (int k = 0; k < 3; k++)
+    for (double stiffness = 250; stiffness < 1e6; stiffness *= 10)
+      for (int phase = 0; phase < 4; phase++) check_wet_impact(densities[k], stiffness, 3 + 0.02 * phase);
+}
+
+/* A stack of two on the bottom of a box: the overlaps, and what presses on the bottom over the weight. */
+struct rest {
+  double overlap[2], weight;
+};
+
+static struct rest rest_of(const struct discs *d, double weight)
+{
+  return (struct rest){
+      {d->radius[0] - d->y[0], d->radius[0] + d->radius[1] - hypot(d->x[1] - d->x[0], d->y[1] - d->y[0])},
+      (d->contact_fy[0] + d->contact_fy[1]) / weight};
+}
+
+static void check_rest(double stiffness, enum contact_area area, int substeps, double tolerance)
+{
+  struct scene scene = scene_box(30, 44, 0.05, SIDES_CLOSED);
+  scene.particles.gravity[1] = -1e-4;
+  scene.contact.stiffness = stiffness;
+  scene.contact.area = area;
+  scene.contact.substeps = substeps;
+  for (int k = 0; k < 2; k++) scene_add_disc(&scene, 5, 2, 15, 5 + 10 * k);
+  omp_set_num_threads(1);
+  struct simulation *simulation = start(&scene);
+  const struct discs *d = simulation_discs(simulation);
+  const double weight = 1e-4 * (d->mass[0] - d->fluid_mass[0] + d->mass[1] - d->fluid_mass[1]);
+  advance(simulation, 5000);
+  const struct rest early = rest_of(d, weight);
+  advance(simulation, 15000);
+  const struct rest late = rest_of(d, weight);
+  cr_expect_float_eq(late.weight, 1, tolerance, "stiffness %g, area %d, sub-steps %d: bears %g of the weight",
+                     stiffness, area, substeps, late.weight);
+  for (int k = 0; k < 2; k++)
+    cr_expect(late.overlap[k] > 0 && late.overlap[k] < 0.2 && fabs(late.overlap[k] - early.overlap[k]) < 1e-6,
+              "stiffness %g, area %d, sub-steps %d: overlap %d is %g, was %g", stiffness, area, substeps, k,
+              late.overlap[k], early.overlap[k]);
+  simulation_destroy(simulation);
+  scene_clear(&scene);
+}
+
+Test(rest, contacts_bear_the_whole_weight_of_a_stack_and_do_not_give_way)
+{
+  for (double stiffness = 25; stiffness <= 250000; stiffness *= 100) check_rest(stiffness, AREA_LENS, 0, 1e-6);
+}
+
 /* The message with which the first step fails. */
 static void expect_refusal(const struct scene *scene, int threads)
 {

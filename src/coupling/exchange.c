@@ -8,6 +8,9 @@
 /* The least inertia, of a disc and what follows it at once, in units of m_f. */
 static const double least_inertia = 0.15;
 
+/* Over which C is a mean, in steps: much longer than an impact to which s matters. */
+static const double carried_time = 100;
+
 static bool is_light(const struct discs *d, size_t i)
 {
   return d->motion[i] == DISC_FREE && d->mass[i] < (1 + least_inertia) * d->fluid_mass[i];
@@ -40,6 +43,8 @@ bool exchange_create(struct exchange *e, const struct scene *scene, const struct
       (e->response = memory_allocate(discs->count, sizeof *e->response, what, status)) &&
       (e->surface = memory_allocate(discs->count, sizeof *e->surface, what, status)) &&
       (!any_light(e, discs) || (e->memory = memory_allocate(3 * discs->count, sizeof *e->memory, what, status))) &&
+      (e->solve != SOLVE_IMPLICIT ||
+       (e->carried = memory_allocate(2 * discs->count, sizeof *e->carried, what, status))) &&
       (e->solve == SOLVE_IMPLICIT || (e->last = memory_allocate(3 * discs->count, sizeof *e->last, what, status))))
     return true;
   exchange_destroy(e);
@@ -53,6 +58,7 @@ void exchange_destroy(struct exchange *e)
   free(e->surface);
   free(e->last);
   free(e->memory);
+  free(e->carried);
   *e = (struct exchange){0};
 }
 
@@ -62,7 +68,8 @@ bool exchange_store(struct exchange *e, size_t discs, struct store *store, struc
   uint8_t has_last = e->has_last; /* any byte may come back, of which not every one is a bool */
   const bool stored = store_mark(store, "exchange", status) && store_bytes(store, &has_last, sizeof has_last, status) &&
                       (!e->last || store_bytes(store, e->last, bytes, status)) &&
-                      (!e->memory || store_bytes(store, e->memory, bytes, status));
+                      (!e->memory || store_bytes(store, e->memory, bytes, status)) &&
+                      (!e->carried || store_bytes(store, e->carried, bytes / 3 * 2, status));
   e->has_last = has_last;
   return stored;
 }
@@ -97,18 +104,18 @@ void exchange_force(const struct gathered *g, double vx, double vy, double omega
   force[2] = g->l - (g->m1x * vy - g->m1y * vx + g->m2 * omega);
 }
 
-/* dV without contacts: A^-1 R. */
-static void respond(struct response *a, const double r[3])
+void response_to(const struct response *k, const double impulse[3], double dv[3])
 {
-  a->dvx = a->xx * r[0] + a->xy * r[1] + a->xw * r[2];
-  a->dvy = a->xy * r[0] + a->yy * r[1] + a->yw * r[2];
-  a->domega = a->xw * r[0] + a->yw * r[1] + a->ww * r[2];
+  dv[0] = k->xx * impulse[0] + k->xy * impulse[1] + k->xw * impulse[2];
+  dv[1] = k->xy * impulse[0] + k->yy * impulse[1] + k->yw * impulse[2];
+  dv[2] = k->xw * impulse[0] + k->yw * impulse[1] + k->ww * impulse[2];
 }
 
-/* A^-1 by elimination of omega: A = [[t, 0, -y], [0, t, x], [-y, x, w]]. False unless A is positive definite. */
-static bool invert(const struct gathered *g, double mass, double inertia, struct response *inverse)
+/* Inverse of diag(mass, mass, inertia) + share M, by elimination of omega: A = [[t, 0, -y], [0, t, x], [-y, x, w]]. False
+ * unless A is positive definite. */
+static bool invert(const struct gathered *g, double mass, double inertia, double share, struct response *inverse)
 {
-  const double t = mass + g->m0, w = inertia + g->m2, x = g->m1x, y = g->m1y;
+  const double t = mass + share * g->m0, w = inertia + share * g->m2, x = share * g->m1x, y = share * g->m1y;
   const double schur = w - (x * x + y * y) / t;
   if (!(t > 0 && schur > 0)) return false;
   inverse->ww = 1 / schur;
@@ -117,6 +124,24 @@ static bool invert(const struct gathered *g, double mass, double inertia, struct
   inverse->xx = 1 / t + y / t * inverse->xw;
   inverse->xy = -x / t * inverse->xw;
   inverse->yy = 1 / t - x / t * inverse->yw;
+  inverse->share = share;
+  return true;
+}
+
+/* K, and dV without contacts; r is R, and then R + C. */
+static bool respond(struct response *response, const struct gathered *g, double mass, double inertia, double r[3],
+                    const double carried[2])
+{
+  const double c[3] = {carried[0], carried[1], 0};
+  double free[3], back[3];
+  for (int k = 0; k < 3; k++) r[k] += c[k];
+  if (!invert(g, mass, inertia, 1, response)) return false;
+  response_to(response, r, free);
+  invert(g, mass, inertia, 0.5, response); /* or what stands there remains */
+  response_to(response, c, back);
+  response->dvx = free[0] - back[0];
+  response->dvy = free[1] - back[1];
+  response->domega = free[2] - back[2];
   return true;
 }
 
@@ -131,11 +156,17 @@ static bool solve_implicit(struct exchange *e, const struct discs *d, size_t i, 
     const double *p = &e->memory[3 * i];
     for (int k = 0; k < 3; k++) r[k] += p[k] / held.time;
   }
-  if (!invert(&e->gathered[i], d->mass[i] - d->fluid_mass[i] + held.mass,
-              d->inertia[i] - d->fluid_inertia[i] + held.inertia, &e->response[i]))
-    return false;
-  respond(&e->response[i], r);
-  return true;
+  return respond(&e->response[i], &e->gathered[i], d->mass[i] - d->fluid_mass[i] + held.mass,
+                 d->inertia[i] - d->fluid_inertia[i] + held.inertia, r, &e->carried[2 * i]);
+}
+
+void exchange_hide(struct exchange *e, size_t i, double jx, double jy, double hidden[3])
+{
+  double *carried = &e->carried[2 * i];
+  const double impact[3] = {jx - carried[0], jy - carried[1], 0};
+  response_to(&e->response[i], impact, hidden);
+  for (int k = 0; k < 3; k++) hidden[k] *= 1 - e->response[i].share;
+  for (int axis = 0; axis < 2; axis++) carried[axis] += impact[axis] / carried_time;
 }
 
 static void solve_explicit(struct exchange *e, const struct discs *d, size_t i, double weight[2])
@@ -150,7 +181,11 @@ static void solve_explicit(struct exchange *e, const struct discs *d, size_t i, 
   r[0] += weight[0];
   r[1] += weight[1];
   e->response[i] = (struct response){.xx = 1 / d->mass[i], .yy = 1 / d->mass[i], .ww = 1 / d->inertia[i]};
-  respond(&e->response[i], r);
+  double dv[3];
+  response_to(&e->response[i], r, dv);
+  e->response[i].dvx = dv[0];
+  e->response[i].dvy = dv[1];
+  e->response[i].domega = dv[2];
 }
 
 /* Why A of a disc cannot be inverted. */

@@ -4,12 +4,20 @@
  * cells of a disc, with b = 2 w_p B and lever arm r, the streamed, not yet collided populations give
  *   P = sum b j, L = sum b (r x j), M0 = sum b rho, M1 = sum b rho r, M2 = sum b rho |r|^2,
  * and the change of velocity dV = (dVx, dVy, domega) over the step follows from
- *   A dV = R + J,  A = diag(m - m_f, m - m_f, I - I_f) + M,  R = weight + (P, L) - M V,
+ *   A dV = R,  A = diag(m - m_f, m - m_f, I - I_f) + M,  R = weight + (P, L) - M V,
  *        | M0    0    -M1y |
- *   M =  | 0     M0    M1x |     J: impulse of all contacts of the step.
+ *   M =  | 0     M0    M1x |
  *        | -M1y  M1x   M2  |
- * The gather stops short of J: it leaves A^-1 and A^-1 R, and contacts (sim/contacts.c), however many sub-steps they
- * take, add A^-1 J. The sweep then runs with the new velocities and needs no reduction.
+ * and the sweep runs with the new velocities and needs no reduction.
+ *
+ * Contacts (sim/contacts.c), however many sub-steps they take, add K J, with J their impulse over the step. A force meets
+ * m - m_f + M0, about m + m_f: the fluid inside is reflected about the new velocity, takes up twice what it needs to
+ * follow, and hands that back a step later. To a contact that is over by then it would lend the energy by which discs part
+ * faster than they met. So of what an impact adds the sweep sees a share s = 1/2, which makes the fluid of a wholly covered
+ * cell follow exactly; of C, what contacts carry steadily, as the weight of discs at rest, it sees all:
+ *   K^-1 = diag(m - m_f, m - m_f, I - I_f) + s M,  dV = A^-1 (R + C) + K (J - C),  the sweep sees V + dV - (1 - s) K (J - C),
+ * with C the mean of J over some time: C' = C + (J - C)/100. Only where K^-1 is not positive definite, as of a light disc
+ * pressed far into a wall, s = 1.
  *
  * Light discs. m_f counts all fluid inside the disc, but only M0/2 of it follows within the step; the rest, in partly
  * covered cells, follows in the time of sound. Below a density of about 1 - M0/(2 m_f), 0.1 to 0.3, a disc and what
@@ -38,9 +46,10 @@ struct gathered {
   double px, py, l, m0, m1x, m1y, m2;
 };
 
-/* A^-1, symmetric, and the change of velocity without contacts. */
+/* K, symmetric, and the change of velocity without contacts, A^-1 (R + C) - K C. */
 struct response {
   double xx, xy, xw, yy, yw, ww;
+  double share; /* s */
   double dvx, dvy, domega;
 };
 
@@ -50,8 +59,9 @@ struct exchange {
   struct gathered *gathered;
   struct response *response;
   struct surface_velocity *surface;
-  double *last;   /* explicit-averaged: [3 disc + component] exchange of the step before */
-  double *memory; /* implicit, with light discs: [3 disc + component] p of each disc; else NULL */
+  double *last;    /* explicit-averaged: [3 disc + component] exchange of the step before */
+  double *carried; /* implicit: [2 disc + axis] C */
+  double *memory;  /* implicit, with light discs: [3 disc + component] p of each disc; else NULL */
   bool has_last;
 };
 
@@ -72,6 +82,13 @@ struct held {
   double mass, inertia, time;
 };
 struct held exchange_held(const struct exchange *exchange, const struct discs *discs, size_t disc);
+
+/* K times an impulse. */
+void response_to(const struct response *k, const double impulse[3], double dv[3]);
+
+/* Implicit: what the sweep does not see of the velocity that the impulse J of its contacts has given a disc, which then
+ * counts for C. */
+void exchange_hide(struct exchange *exchange, size_t disc, double jx, double jy, double hidden[3]);
 
 /* The exchange (force, torque) on the disc if it moves with the given velocity: (P, L) - M V. */
 void exchange_force(const struct gathered *g, double vx, double vy, double omega, double force[3]);

@@ -30,13 +30,15 @@ static void finish_disc(const struct contacts *c, struct exchange *e, struct dis
 {
   const struct response *r = &e->response[i];
   const double jx = d->contact_fx[i], jy = d->contact_fy[i];
-  const double dvx = r->dvx + r->xx * jx + r->xy * jy;
-  const double dvy = r->dvy + r->xy * jx + r->yy * jy;
-  const double domega = r->domega + r->xw * jx + r->yw * jy;
+  double kick[3], hidden[3] = {0, 0, 0};
+  response_to(r, (const double[3]){jx, jy, 0}, kick);
+  const double dvx = r->dvx + kick[0], dvy = r->dvy + kick[1], domega = r->domega + kick[2];
   const struct surface_velocity old = {d->vx[i], d->vy[i], d->omega[i]};
   const struct surface_velocity new = {old.vx + dvx, old.vy + dvy, old.omega + domega};
   const bool implicit = e->solve == SOLVE_IMPLICIT;
-  e->surface[i] = implicit ? new : old;
+  if (implicit) exchange_hide(e, i, jx, jy, hidden);
+  e->surface[i] =
+      implicit ? (struct surface_velocity){new.vx - hidden[0], new.vy - hidden[1], new.omega - hidden[2]} : old;
 
   double force[3];
   exchange_force(&e->gathered[i], e->surface[i].vx, e->surface[i].vy, e->surface[i].omega, force);
