@@ -4,6 +4,7 @@
 #include "contact/overlap.h"
 #include "drive.h"
 #include "scenes.h"
+#include "sim/contact_memory.h"
 
 #include <criterion/criterion.h>
 #include <gsl/gsl_rng.h>
@@ -87,6 +88,18 @@ Test(lens, area_tends_to_the_small_overlap_limit_without_cancellation)
       cr_expect_float_eq(lens_of_discs(1, r, d).area / limit, 1, tolerance, "R = 1, %g, overlap %g", r, overlap);
       cr_expect_float_eq(lens_of_wall(1, 1 - wanted).area / wall, 1, tolerance, "wall, overlap %g", wanted);
     }
+}
+
+Test(lens, of_small_overlap_has_the_limits_area_and_chord_and_is_found_from_its_area)
+{
+  for (double overlap = 1e-9; overlap < 1e-3; overlap *= 10) {
+    const double c = lens_small(3, 7), wall = lens_small(3, INFINITY);
+    const struct lens pair = lens_of_discs(3, 7, 10 - overlap), side = lens_of_wall(3, 3 - overlap);
+    cr_expect_float_eq(lens_small_area(c, overlap) / pair.area, 1, 0.2 * overlap + 1e-5);
+    cr_expect_float_eq(lens_small_chord(c, overlap) / pair.chord, 1, 0.2 * overlap + 1e-5);
+    cr_expect_float_eq(lens_small_area(wall, overlap) / side.area, 1, 0.2 * overlap + 1e-5);
+    cr_expect_float_eq(lens_small_overlap(c, lens_small_area(c, overlap)) / overlap, 1, 1e-14);
+  }
 }
 
 Test(lens, chord_is_the_rate_at_which_the_area_grows)
@@ -275,6 +288,9 @@ struct impact {
   double speed, gap;
   double overlap; /* stiffness: what an undamped impact would reach, in cells */
   double damping;
+  double place[2]; /* of the whole, from where its middle would be: of consequence to areas by cells */
+  enum contact_area area;
+  int substeps;
 };
 
 struct outcome {
@@ -314,10 +330,12 @@ static struct scene impact_scene(const struct impact *i)
   struct scene scene = scene_box(BOX, BOX, 0.01, i->wall ? SIDES_CLOSED : SIDES_PERIODIC);
   scene.coupling.form = FORM_UNIFIED; /* bears deeper overlaps, in which fluid is trapped */
   scene.contact.damping = i->damping;
+  scene.contact.area = i->area;
+  scene.contact.substeps = i->substeps;
   scene.contact.stiffness = 0.5 * reduced_mass(i) * i->speed * i->speed / work(i, i->overlap) / scene.contact.alpha;
   const double *n = i->direction, apart = i->radius[0] + i->radius[1] + i->gap;
   const double along = i->wall ? BOX / 2.0 - apart : -apart / 2; /* from the middle of the box */
-  const double x[2] = {BOX / 2.0 + along * n[0], BOX / 2.0 + along * n[1]};
+  const double x[2] = {i->place[0] + BOX / 2.0 + along * n[0], i->place[1] + BOX / 2.0 + along * n[1]};
   const double part = reduced_mass(i) / (heavy * M_PI * i->radius[0] * i->radius[0]);
   struct disc_spec *first = scene_add_disc(&scene, i->radius[0], heavy, x[0], x[1]);
   for (int axis = 0; axis < 2; axis++) first->velocity[axis] = part * i->speed * n[axis];
@@ -438,6 +456,74 @@ Test(impact, with_damping_kinetic_energy_never_grows)
   }
 }
 
+/* The largest speed of parting over that of approach, however the contact may come and go. */
+static double fastest_parting(const struct impact *i, int64_t steps)
+{
+  struct scene scene = impact_scene(i);
+  omp_set_num_threads(1);
+  struct simulation *simulation = start(&scene);
+  double fastest = -i->speed;
+  while (simulation_step(simulation) < steps) {
+    double closing;
+    advance(simulation, 1);
+    overlap_of(i, simulation_discs(simulation), &closing);
+    fastest = fmax(fastest, -closing);
+  }
+  simulation_destroy(simulation);
+  scene_clear(&scene);
+  return fastest / i->speed;
+}
+
+/* Over eight decades of stiffness, offsets in a cell, directions, and sub-steps as needed or far too few. */
+static void check_return(enum contact_area area, double damping, double most)
+{
+  static const double directions[][2] = {{1, 0}, {0.6, -0.8}};
+  static const int substeps[] = {0, 1, 4};
+  for (double decade = 0; decade <= 8; decade += 2)
+    for (int k = 0; k < 12; k++) {
+      const double *n = directions[k % 2];
+      const struct impact impact = {.radius = {10, 7},
+                                    .direction = {n[0], n[1]},
+                                    .speed = 0.05,
+                                    .gap = 1.3 + 0.01 * k,
+                                    .overlap = 0.6 * pow(10, -0.4 * decade),
+                                    .damping = damping,
+                                    .place = {0.37 * k, 0.61 * k},
+                                    .area = area,
+                                    .substeps = substeps[k % 3]};
+      const double parting = fastest_parting(&impact, 100);
+      cr_expect(parting > -1 && parting <= most, "area %d, overlap %g, damping %g, sub-steps %d, place %d: parts at %g",
+                area, impact.overlap, damping, impact.substeps, k, parting);
+    }
+}
+
+Test(impact, gives_back_no_more_speed_than_it_took_whatever_the_area_and_the_sub_steps)
+{
+  check_return(AREA_LENS, 0, 1.001);
+  check_return(AREA_CELLS, 0, 1.001);
+  check_return(AREA_LENS, 0.34, 1.001);
+  check_return(AREA_CELLS, 0.34, 1.001);
+}
+
+/* An area by cells begins where a lens does not, but when stiff it lasts as long and is damped as much. */
+Test(impact, stiff_contacts_by_cells_are_damped_as_those_by_lens)
+{
+  for (double decade = 4; decade <= 8; decade++)
+    for (int k = 0; k < 6; k++) {
+      struct impact impact = {.radius = {10, 10},
+                              .direction = {k % 2, 1 - k % 2},
+                              .speed = 0.05,
+                              .gap = 1.3 + 0.01 * k,
+                              .overlap = 0.6 * pow(10, -0.4 * decade),
+                              .damping = 0.34,
+                              .place = {0.37 * k, 0.61 * k}};
+      const double lens = fastest_parting(&impact, 100);
+      impact.area = AREA_CELLS;
+      const double cells = fastest_parting(&impact, 100);
+      cr_expect_float_eq(cells, lens, 0.02, "decade %g, place %d: %g, by lens %g", decade, k, cells, lens);
+    }
+}
+
 /* Two discs of radius 5 that meet head on in a fluid that matters. */
 static struct scene wet_scene(double density, double stiffness, double gap)
 {
@@ -544,7 +630,10 @@ static void check_rest(double stiffness, enum contact_area area, int substeps, d
 
 Test(rest, contacts_bear_the_whole_weight_of_a_stack_and_do_not_give_way)
 {
-  for (double stiffness = 25; stiffness <= 250000; stiffness *= 100) check_rest(stiffness, AREA_LENS, 0, 1e-6);
+  for (enum contact_area area = AREA_LENS; area <= AREA_CELLS; area++)
+    for (double stiffness = 25; stiffness <= 250000; stiffness *= 100) check_rest(stiffness, area, 0, 1e-6);
+  check_rest(2500, AREA_LENS, 1, 0.5); /* far too few */
+  check_rest(2500, AREA_CELLS, 1, 0.5);
 }
 
 /* The message with which the first step fails. */
@@ -557,6 +646,88 @@ static void expect_refusal(const struct scene *scene, int threads)
   cr_expect(strstr(status.message, "sub-steps a step, more than 1000000: use a smaller contact.stiffness"), "%s",
             status.message);
   simulation_destroy(simulation);
+}
+
+/* Contacts of a random few of so many discs, in order. */
+static struct contact_memory random_memory(gsl_rng *random, uint32_t discs)
+{
+  struct contact_memory memory = {0};
+  struct status status;
+  cr_assert(contact_memory_reserve(&memory, discs * (discs + 7) / 2, &status), "%s", status.message);
+  for (int sides = 0; sides < 2; sides++)
+    for (uint32_t a = 0; a < discs; a++)
+      for (uint32_t b = sides ? 0 : a + 1; b < (sides ? 4 : discs); b++)
+        if (gsl_rng_uniform(random) < 0.5)
+          contact_memory_add(&memory, a, sides ? contact_sides + b : b,
+                             &(struct contact_account){.stored = gsl_rng_uniform(random)});
+  return memory;
+}
+
+static bool pass(struct contact_memory *memory, uint32_t discs, char *bytes, size_t size, bool saving,
+                 struct status *status)
+{
+  struct store store = {.stream = fmemopen(bytes, size, saving ? "wb" : "rb"), .path = "memory", .saving = saving};
+  const bool passed = contact_memory_store(memory, discs, &store, status);
+  fclose(store.stream);
+  return passed;
+}
+
+Test(memory, walked_through_from_anywhere_finds_each_contact_and_no_other)
+{
+  enum { DISCS = 9 };
+  gsl_rng *random = random_from(4);
+  const struct contact_memory memory = random_memory(random, DISCS);
+  size_t whole = 0, found = 0;
+  for (int sides = 0; sides < 2; sides++)
+    for (uint32_t a = 0; a < DISCS; a++)
+      for (uint32_t b = sides ? 0 : a + 1; b < (sides ? 4 : DISCS); b++) {
+        const uint32_t other = sides ? contact_sides + b : b;
+        size_t here = contact_memory_seek(&memory, a, other);
+        const struct contact_account *walked = contact_memory_walk(&memory, &whole, a, other);
+        cr_expect_eq(walked, contact_memory_walk(&memory, &here, a, other));
+        found += walked != NULL;
+      }
+  cr_expect_eq(found, memory.count);
+  struct contact_memory done = memory;
+  contact_memory_destroy(&done);
+  gsl_rng_free(random);
+}
+
+Test(memory, comes_back_whole_and_is_refused_in_words_where_a_run_cannot_have_left_it)
+{
+  enum { DISCS = 6, HEAD = sizeof(uint64_t), ENTRY = 40, ROOM = HEAD + DISCS * (DISCS + 7) / 2 * ENTRY };
+  static const double wrong[] = {NAN, INFINITY, -1};
+  static const uint32_t far = DISCS;
+  static const uint64_t many = DISCS * (DISCS + 7) / 2 + 1;
+  char bytes[ROOM] = {0}, again[ROOM] = {0};
+  struct status status;
+  gsl_rng *random = random_from(5);
+  struct contact_memory memory = random_memory(random, DISCS), other = {0};
+  cr_assert(memory.count > 2 && pass(&memory, DISCS, bytes, ROOM, true, &status), "%s", status.message);
+  cr_assert(pass(&other, DISCS, bytes, ROOM, false, &status) && pass(&other, DISCS, again, ROOM, true, &status));
+  cr_expect_eq(memcmp(bytes, again, ROOM), 0);
+  const struct {
+    size_t at, size;
+    const void *with;
+  } spoilt[] = {{0, sizeof many, &many},
+                {HEAD, sizeof far, &far},
+                {HEAD + 4, sizeof far, &far},
+                {HEAD, ENTRY, bytes + HEAD + ENTRY}, /* twice the same */
+                {HEAD + 8, sizeof(double), &wrong[0]},
+                {HEAD + 8, sizeof(double), &wrong[2]},
+                {HEAD + 16, sizeof(double), &wrong[1]},
+                {HEAD + 24, sizeof(double), &wrong[0]},
+                {HEAD + 32, sizeof(double), &wrong[1]}};
+  for (size_t k = 0; k < sizeof spoilt / sizeof spoilt[0]; k++) {
+    memcpy(again, bytes, ROOM);
+    memcpy(again + spoilt[k].at, spoilt[k].with, spoilt[k].size);
+    status.message[0] = 0;
+    cr_expect(!pass(&other, DISCS, again, ROOM, false, &status) && strstr(status.message, "cannot read memory: "),
+              "%zu: %s", k, status.message);
+  }
+  contact_memory_destroy(&memory);
+  contact_memory_destroy(&other);
+  gsl_rng_free(random);
 }
 
 Test(contacts, too_stiff_to_be_followed_are_refused_by_any_number_of_threads)

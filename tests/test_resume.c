@@ -78,6 +78,9 @@ Test(state, of_stiff_contacts_is_whole)
   scene.contact.stiffness = 30;
   scene.contact.search = SEARCH_LINKED_CELL;
   expect_same_end("stiff", &scene, 400, 41);
+  scene.contact.search = SEARCH_GRID;
+  scene.contact.area = AREA_CELLS;
+  expect_same_end("stiff, cells", &scene, 400, 41);
 }
 
 /* Two discs that move through all sides of a periodic box, one driven. */

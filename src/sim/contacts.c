@@ -1,7 +1,6 @@
 #include "sim/contacts.h"
 
 #include "base/memory.h"
-#include "contact/lens.h"
 
 #include <math.h>
 #include <omp.h>
@@ -26,8 +25,8 @@ static bool allocate_followed(struct contacts *c, size_t discs, struct status *s
 bool contacts_create(struct contacts *c, const struct scene *scene, const struct plan *plan, const struct discs *discs,
                      struct status *status)
 {
-  *c =
-      (struct contacts){.scene = scene, .plan = *plan, .law = contact_law_of(scene), .substeps = 1, .most_substeps = 1};
+  *c = (struct contacts){
+      .scene = scene, .plan = *plan, .law = contact_law_of(scene), .substeps = 1, .most_substeps = 1, .placed = true};
   const bool linked = plan->pairs && scene->contact.search == SEARCH_LINKED_CELL;
   if ((!plan->substeps || allocate_followed(c, discs->count, status)) &&
       (!plan->pairs || overlap_create(&c->pairs, discs->count, status)) &&
@@ -41,41 +40,34 @@ void contacts_destroy(struct contacts *c)
 {
   overlap_destroy(&c->pairs);
   linked_cell_destroy(&c->linked);
+  contact_memory_destroy(&c->memory);
   void *const arrays[] = {c->list,      c->followed,  c->is_followed, c->within.x, c->within.y,
                           c->within.vx, c->within.vy, c->fx,          c->fy};
   for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; k++) free(arrays[k]);
   *c = (struct contacts){0};
 }
 
-bool contacts_store(struct contacts *c, struct store *store, struct status *status)
+void contacts_placed(struct contacts *c)
 {
-  return store_mark(store, "contacts", status) &&
-         store_bytes(store, &c->last_substep, sizeof c->last_substep, status) &&
-         store_bytes(store, &c->most_substeps, sizeof c->most_substeps, status);
+  c->placed = true;
+}
+
+bool contacts_store(struct contacts *c, size_t discs, struct store *store, struct status *status)
+{
+  uint8_t placed = c->placed;
+  const bool stored =
+      store_mark(store, "contacts", status) && store_bytes(store, &c->last_substep, sizeof c->last_substep, status) &&
+      store_bytes(store, &c->most_substeps, sizeof c->most_substeps, status) &&
+      store_bytes(store, &placed, sizeof placed, status) && contact_memory_store(&c->memory, discs, store, status);
+  c->placed = placed;
+  if (stored && !(c->last_substep >= 0 && c->last_substep <= 1))
+    return status_fail(status, DELBM_IO, "cannot read %s: a sub-step of %g steps", store->path, c->last_substep);
+  return stored;
 }
 
 static double inverse_mass(const struct discs *d, uint32_t i)
 {
   return d->motion[i] == DISC_FREE ? 1 / d->mass[i] : 0;
-}
-
-static double nearest(const struct scene *scene, int axis, double d)
-{
-  return nearest_image(d, scene->domain.size[axis], scene_is_periodic(scene, axis));
-}
-
-static double distance_to_side(const struct scene *scene, enum side_name side, double x, double y)
-{
-  switch (side) {
-  case SIDE_LEFT:
-    return x;
-  case SIDE_RIGHT:
-    return scene->domain.size[0] - x;
-  case SIDE_BOTTOM:
-    return y;
-  default:
-    return scene->domain.size[1] - y;
-  }
 }
 
 static bool add_sides_of(struct contacts *c, const struct discs *d, uint32_t i, double reach, struct status *status)
@@ -84,7 +76,7 @@ static bool add_sides_of(struct contacts *c, const struct discs *d, uint32_t i, 
     if (c->scene->domain.side[side].type == SIDE_PERIODIC) continue;
     if (distance_to_side(c->scene, side, d->x[i], d->y[i]) >= d->radius[i] + reach) continue;
     if (!memory_grow(&c->list, &c->capacity, c->count + 1, sizeof *c->list, "the contacts", status)) return false;
-    c->list[c->count++] = (struct contact){.a = i, .b = contact_with_side, .side = side};
+    c->list[c->count++] = (struct contact){.a = i, .b = contact_sides + side};
   }
   return true;
 }
@@ -114,84 +106,55 @@ static bool collect(struct contacts *c, const struct occupation *o, struct discs
   c->count = c->pairs.count;
   c->substeps = 1;
   return memory_grow(&c->list, &c->capacity, c->count, sizeof *c->list, "the contacts", status) &&
-         (!c->plan.walls || add_sides(c, d, status));
+         (!c->plan.walls || add_sides(c, d, status)) && contact_memory_reserve(&c->memory, c->count, status);
 }
 
-static void prepare(struct contacts *c, const struct discs *d, size_t k)
+/* Of a pair that the search has found. */
+static struct contact contact_of(const struct near_pair *pair)
 {
-  struct contact *contact = &c->list[k];
-  if (k < c->pairs.count) {
-    const struct near_pair *pair = &c->pairs.pairs[k];
-    const double dx = nearest(c->scene, 0, d->x[pair->b] - d->x[pair->a]);
-    const double dy = nearest(c->scene, 1, d->y[pair->b] - d->y[pair->a]);
-    const double near = d->radius[pair->a] + d->radius[pair->b] + c->plan.reach;
-    const bool touching = dx * dx + dy * dy < near * near || pair->cells_area > 0;
-    *contact = (struct contact){.a = pair->a,
-                                .b = pair->b,
-                                .inverse_mass = touching ? inverse_mass(d, pair->a) + inverse_mass(d, pair->b) : 0,
-                                .cells_area = pair->cells_area};
-  } else {
-    contact->inverse_mass = inverse_mass(d, contact->a);
-  }
-  contact->damping = contact_damping(&c->law, contact->inverse_mass);
+  return (struct contact){.a = pair->a, .b = pair->b, .cells_area = pair->cells_area};
 }
 
-/* A contact's geometry: the lens, the normal from a to what it meets, and the speed at which they close. */
-struct meeting {
-  struct lens lens;
-  double nx, ny, closing;
-};
-
-static struct meeting meet_side(const struct scene *scene, const struct contact *c, const struct places *at,
-                                double radius)
+/* A spring holds 2/5 of its force times the overlap. */
+static double energy_held(const struct contacts *m, const struct contact *c, double area)
 {
-  static const double normal[SIDE_COUNT][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
-  const double *n = normal[c->side];
-  const double distance = distance_to_side(scene, c->side, at->x[c->a], at->y[c->a]);
-  return (struct meeting){lens_of_wall(radius, distance), n[0], n[1], at->vx[c->a] * n[0] + at->vy[c->a] * n[1]};
+  return 0.4 * m->law.stiffness * area * lens_small_overlap(c->small, area);
 }
 
-static struct meeting meet(const struct scene *scene, const struct discs *d, const struct contact *c,
-                           const struct places *at)
+static double overlap_that_holds(const struct contacts *m, const struct contact *c, double energy)
 {
-  const uint32_t a = c->a, b = c->b;
-  if (b == contact_with_side) return meet_side(scene, c, at, d->radius[a]);
-  const double dx = nearest(scene, 0, at->x[b] - at->x[a]), dy = nearest(scene, 1, at->y[b] - at->y[a]);
-  const double distance = sqrt(dx * dx + dy * dy);
-  struct meeting meeting = {.lens = lens_of_discs(d->radius[a], d->radius[b], distance), .nx = 1};
-  if (distance > 0) { /* coincident centres are pushed apart along x */
-    meeting.nx = dx / distance;
-    meeting.ny = dy / distance;
-  }
-  meeting.closing = (at->vx[a] - at->vx[b]) * meeting.nx + (at->vy[a] - at->vy[b]) * meeting.ny;
-  if (scene->contact.area == AREA_CELLS) meeting.lens.area = c->cells_area;
-  return meeting;
-}
-
-/* Inverse mass of the relative motion along the normal, added mass of the fluid included: what the response says. */
-static double compliance(const struct contact *c, const struct exchange *e, const struct meeting *at)
-{
-  double sum = 0;
-  for (int end = 0; end < 2; end++) {
-    const uint32_t i = end ? c->b : c->a;
-    if (i == contact_with_side) continue;
-    const struct response *r = &e->response[i];
-    sum += at->nx * at->nx * r->xx + 2 * at->nx * at->ny * r->xy + at->ny * at->ny * r->yy;
-  }
-  return sum;
+  return pow(energy / (0.4 * m->law.stiffness * c->small), 0.4);
 }
 
 /* Sub-steps that a contact needs, at the overlap that it may reach within the step. */
-static int substeps_needed(const struct contacts *m, const struct discs *d, const struct exchange *e,
-                           const struct contact *c)
+static int substeps_needed(const struct contacts *m, const struct contact *c, const struct exchange *e,
+                           const struct meeting *at)
 {
+  const bool cells = m->scene->contact.area == AREA_CELLS && !contact_is_with_side(c);
+  const double chord = cells ? lens_small_chord(c->small, lens_small_overlap(c->small, at->lens.area)) : at->lens.chord;
+  const double most = fmax(chord, lens_small_chord(c->small, fmax(0, at->closing)) + chord / 2);
+  return plan_substeps(m->scene, m->law.stiffness * most, c->damping, meeting_compliance(at, c, e));
+}
+
+/* Readies a contact, whose account is looked for from *memory on, and returns the sub-steps that it needs. */
+static int prepare(struct contacts *m, const struct discs *d, const struct exchange *e, struct contact *c,
+                   size_t *memory)
+{
+  const bool side = contact_is_with_side(c);
+  const struct meeting at = meeting_of(m->scene, d, c, &(struct places){d->x, d->y, d->vx, d->vy});
+  const double reach = d->radius[c->a] + (side ? 0 : d->radius[c->b]) + m->plan.reach;
+  if (!side && at.distance >= reach && c->cells_area <= 0) return 1;
+  c->inverse_mass = inverse_mass(d, c->a) + (side ? 0 : inverse_mass(d, c->b));
   if (c->inverse_mass <= 0) return 1;
-  const struct meeting at = meet(m->scene, d, c, &(struct places){d->x, d->y, d->vx, d->vy});
-  const double ra = d->radius[c->a], rb = c->b == contact_with_side ? INFINITY : d->radius[c->b];
-  const double effective = isinf(rb) ? ra : ra * rb / (ra + rb);
-  const double advance = fmax(0, at.closing);
-  const double chord = fmax(at.lens.chord, sqrt(8 * effective * advance) + at.lens.chord / 2);
-  return plan_substeps(m->scene, m->law.stiffness * chord, c->damping, compliance(c, e, &at));
+  c->damping = contact_damping(&m->law, c->inverse_mass);
+  c->small = lens_small(d->radius[c->a], side ? INFINITY : d->radius[c->b]);
+  const struct contact_account *account = contact_memory_walk(&m->memory, memory, c->a, c->b);
+  if (account)
+    c->account = *account;
+  else if (m->placed)
+    c->account.stored = energy_held(m, c, at.lens.area);
+  account_settle(&c->account, at.closing);
+  return m->plan.substeps ? substeps_needed(m, c, e, &at) : 1;
 }
 
 /* This thread's part of `count` things; all of them where it works alone. */
@@ -216,11 +179,13 @@ static void wait_for_team(bool together)
 static void prepare_all(struct contacts *c, const struct discs *d, const struct exchange *e, bool together)
 {
   const struct part part = part_of(c->count, together);
+  size_t memory = 0;
   int most = 1;
   for (size_t k = part.from; k < part.end; k++) {
-    prepare(c, d, k);
-    if (!c->plan.substeps) continue;
-    const int needed = substeps_needed(c, d, e, &c->list[k]);
+    struct contact *contact = &c->list[k];
+    if (k < c->pairs.count) *contact = contact_of(&c->pairs.pairs[k]);
+    if (k == part.from) memory = contact_memory_seek(&c->memory, contact->a, contact->b);
+    const int needed = prepare(c, d, e, contact, &memory);
     if (needed > most) most = needed;
   }
 #pragma omp critical(delbm_contacts)
@@ -245,7 +210,7 @@ static bool check_substeps(const struct contacts *c, struct team *team)
 
 static void follow_disc(struct contacts *c, const struct discs *d, uint32_t i)
 {
-  if (i == contact_with_side || c->is_followed[i]) return;
+  if (c->is_followed[i]) return;
   c->is_followed[i] = 1;
   c->followed[c->followed_count++] = i;
   c->within.x[i] = d->x[i];
@@ -260,37 +225,72 @@ static void follow_discs(struct contacts *c, const struct discs *d)
 {
   if (c->substeps > c->most_substeps) c->most_substeps = c->substeps;
   for (size_t k = 0; k < c->count && c->substeps > 1; k++) {
-    if (c->list[k].inverse_mass <= 0) continue;
-    follow_disc(c, d, c->list[k].a);
-    follow_disc(c, d, c->list[k].b);
+    const struct contact *contact = &c->list[k];
+    if (contact->inverse_mass <= 0) continue;
+    follow_disc(c, d, contact->a);
+    if (!contact_is_with_side(contact)) follow_disc(c, d, contact->b);
   }
 }
 
-static void find_forces(struct contacts *m, const struct discs *d, const struct places *at, bool together)
+/* In sub-steps the area by cells is followed as that of a lens, from the overlap that the cells say, but from no more than
+ * what the contact has taken allows: cells that come into play at once would throw stiff discs apart. */
+static void follow_cells(const struct contacts *m, const struct discs *d, struct contact *c)
+{
+  const struct meeting at = meeting_of(m->scene, d, c, &(struct places){d->x, d->y, d->vx, d->vy});
+  const double overlap = lens_small_overlap(c->small, c->cells_area);
+  c->touch = c->cells_area > 0 ? at.distance + fmin(overlap, overlap_that_holds(m, c, c->account.stored))
+                               : fmin(at.distance, d->radius[c->a] + d->radius[c->b]);
+}
+
+static void follow_all_cells(struct contacts *m, const struct discs *d, bool together)
+{
+  const struct part part = part_of(m->count, together);
+  for (size_t k = part.from; k < part.end; k++)
+    if (m->list[k].inverse_mass > 0 && !contact_is_with_side(&m->list[k])) follow_cells(m, d, &m->list[k]);
+}
+
+/* The impulse of a contact that presses over `kick`, in a sub-step of length h. */
+static void press(const struct contacts *m, const struct exchange *e, const struct meeting *at, double kick, double h,
+                  struct contact *c)
+{
+  struct contact_account *account = &c->account;
+  const double mean = at->closing + 0.5 * h * meeting_gain(at, c, e);
+  const double most = account_most(account, mean, meeting_compliance(at, c, e), kick * c->damping);
+  account->closing = at->closing;
+  account->spring = fmin(kick * m->law.stiffness * at->lens.area, most);
+  account->impulse = fmin(kick * contact_force(&m->law, at->lens.area, at->closing, c->damping), most);
+  c->fx = account->impulse * at->nx;
+  c->fy = account->impulse * at->ny;
+}
+
+static void find_impulses(struct contacts *m, const struct discs *d, const struct exchange *e, const struct places *at,
+                          double kick, double h, bool together)
 {
   const struct part part = part_of(m->count, together);
   for (size_t k = part.from; k < part.end; k++) {
     struct contact *c = &m->list[k];
     c->fx = c->fy = 0;
     if (c->inverse_mass <= 0) continue;
-    const struct meeting meeting = meet(m->scene, d, c, at);
-    const double force = contact_force(&m->law, meeting.lens.area, meeting.closing, c->damping);
-    c->fx = force * meeting.nx;
-    c->fy = force * meeting.ny;
+    const struct meeting meeting = meeting_of(m->scene, d, c, at);
+    account_settle(&c->account, meeting.closing);
+    if (meeting.lens.area > 0)
+      press(m, e, &meeting, kick, h, c);
+    else
+      c->account.stored = 0;
   }
   wait_for_team(together);
 }
 
-/* Adds the forces, times `kick`, to their discs; by one thread. */
-static void add_forces(const struct contacts *m, double kick, double *fx, double *fy)
+/* Adds the impulses to their discs; by one thread. */
+static void add_impulses(const struct contacts *m, double *fx, double *fy)
 {
   for (size_t k = 0; k < m->count; k++) {
     const struct contact *c = &m->list[k];
-    fx[c->a] -= kick * c->fx;
-    fy[c->a] -= kick * c->fy;
-    if (c->b == contact_with_side) continue;
-    fx[c->b] += kick * c->fx;
-    fy[c->b] += kick * c->fy;
+    fx[c->a] -= c->fx;
+    fy[c->a] -= c->fy;
+    if (contact_is_with_side(c)) continue;
+    fx[c->b] += c->fx;
+    fy[c->b] += c->fy;
   }
 }
 
@@ -313,6 +313,17 @@ static void move_followed(struct contacts *c, const struct exchange *e, struct d
   wait_for_team(together);
 }
 
+/* Of the contacts that have pressed, what the next step goes on from; by one thread. */
+static void remember(struct contacts *m)
+{
+  contact_memory_clear(&m->memory);
+  for (size_t k = 0; k < m->count; k++) {
+    const struct contact *c = &m->list[k];
+    if (c->account.stored > 0 || c->account.impulse > 0) contact_memory_add(&m->memory, c->a, c->b, &c->account);
+  }
+  m->placed = false;
+}
+
 /* The sub-steps: a leapfrog, whose velocities lie half a sub-step before its places. A kick therefore lasts from the
  * middle of the last sub-step to the middle of this one; one of h where h changes would gain energy. */
 static void follow(struct contacts *c, const struct exchange *e, struct discs *d, bool together)
@@ -320,17 +331,19 @@ static void follow(struct contacts *c, const struct exchange *e, struct discs *d
   const bool first = !together || omp_get_thread_num() == 0, moves = c->substeps > 1;
   const double h = 1.0 / c->substeps;
   const struct places start = {d->x, d->y, d->vx, d->vy};
+  if (moves && c->scene->contact.area == AREA_CELLS) follow_all_cells(c, d, together);
   if (first) follow_discs(c, d);
   wait_for_team(together);
   for (int k = 0; k < c->substeps; k++) {
-    find_forces(c, d, moves ? &c->within : &start, together);
+    find_impulses(c, d, e, moves ? &c->within : &start, 0.5 * (c->last_substep + h), h, together);
     if (first) {
-      add_forces(c, 0.5 * (c->last_substep + h), moves ? c->fx : d->contact_fx, moves ? c->fy : d->contact_fy);
+      add_impulses(c, moves ? c->fx : d->contact_fx, moves ? c->fy : d->contact_fy);
       c->last_substep = h;
     }
     wait_for_team(together);
     if (moves) move_followed(c, e, d, h, together);
   }
+  if (first) remember(c);
 }
 
 bool stage_contact(struct contacts *c, const struct occupation *o, const struct exchange *e, struct discs *d,

@@ -302,7 +302,7 @@ static bool store_state(struct simulation *s, struct store *store, struct status
          store_bytes(store, &s->max_mach, sizeof s->max_mach, status) && flow_store(&s->flow, store, status) &&
          (!s->plan.exchange ||
           (discs_store(&s->discs, store, status) && exchange_store(&s->exchange, s->discs.count, store, status) &&
-           contacts_store(&s->contacts, store, status))) &&
+           contacts_store(&s->contacts, s->discs.count, store, status))) &&
          store_bytes(store, &s->times, sizeof s->times, status); /* last: they differ from run to run */
 }
 
@@ -330,16 +330,23 @@ static bool check_places(const struct simulation *s, const struct store *store, 
   return true;
 }
 
-bool simulation_changed(struct simulation *s, struct status *status)
+/* What follows from the state. */
+static bool follow_up(struct simulation *s, struct status *status)
 {
   if (!paint(s, status)) return false;
   if (s->plan.exchange) stage_first_sums(&s->flow, present(s));
   return true;
 }
 
+bool simulation_changed(struct simulation *s, struct status *status)
+{
+  contacts_placed(&s->contacts);
+  return follow_up(s, status);
+}
+
 bool simulation_restore(struct simulation *s, struct store *store, struct status *status)
 {
-  return store_state(s, store, status) && check_places(s, store, status) && simulation_changed(s, status);
+  return store_state(s, store, status) && check_places(s, store, status) && follow_up(s, status);
 }
 
 void simulation_set_fluid(struct simulation *s, const double *density, const double *ux, const double *uy)
