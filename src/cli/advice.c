@@ -59,7 +59,7 @@ static void advise_spin(const struct scene *scene)
   }
 }
 
-/* Maps "impact": contacts shorter than the sub-steps that the case fixes. */
+/* Maps "impact": contacts too short for the sub-steps that the case fixes. */
 static void advise_substeps(const struct scene *scene)
 {
   if (scene->contact.substeps == 0) return;
@@ -67,22 +67,9 @@ static void advise_substeps(const struct scene *scene)
   freely.contact.substeps = 0;
   const int needed = plan_largest_substeps(&freely);
   if (needed > scene->contact.substeps)
-    printf(
-        "  note: %d sub-steps are fewer than the %d that contacts may need; they can gain energy; substeps: auto does "
-        "not (bench/README.md, stability)\n",
-        scene->contact.substeps, needed);
-}
-
-/* Benchmark `accuracy`, impact: an area by cells stays what it is within a step. */
-static void advise_area(const struct scene *scene)
-{
-  struct scene freely = *scene;
-  freely.contact.substeps = 0;
-  if (scene->contact.area == AREA_CELLS && plan_largest_substeps(&freely) > 1)
-    printf("  note: contacts are stiff for area: cells, which gains energy where one lasts fewer than %g steps; area: "
-           "lens "
-           "does not (bench/README.md, stability)\n",
-           scene->contact.steps_per_contact);
+    printf("  note: %d sub-steps are fewer than the %d that contacts may need: they damp otherwise than they should, "
+           "and give way further; substeps: auto does not (bench/README.md, stability)\n",
+           scene->contact.substeps, needed);
 }
 
 /* Map "packing": discs held up by the pressure of a fluid that has not so much of it. */
@@ -115,5 +102,4 @@ void print_advice(const struct scene *scene)
   advise_spin(scene);
   advise_weight(scene);
   advise_substeps(scene);
-  advise_area(scene);
 }
