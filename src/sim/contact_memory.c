@@ -53,8 +53,8 @@ size_t contact_memory_seek(const struct contact_memory *m, uint32_t a, uint32_t 
 const struct contact_account *contact_memory_walk(const struct contact_memory *m, size_t *at, uint32_t a, uint32_t b)
 {
   while (*at < m->count && precedes(m->list[*at].a, m->list[*at].b, a, b)) ++*at;
-  const struct remembered *found = &m->list[*at];
-  return *at < m->count && found->a == a && found->b == b ? &found->account : NULL;
+  const bool found = *at < m->count && m->list[*at].a == a && m->list[*at].b == b;
+  return found ? &m->list[*at].account : NULL;
 }
 
 static bool is_sane(const struct contact_memory *m, size_t k, size_t discs)
