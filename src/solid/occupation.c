@@ -107,7 +107,7 @@ void occupation_destroy(struct occupation *o)
 static void settle(struct occupation *o, const struct discs *discs, size_t i)
 {
   const double radius = discs->radius[i], x = discs->x[i], y = discs->y[i];
-  const double give = weight_give(o->form, radius, discs->omega[i]);
+  const double give = weight_give(o->form, discs->motion[i], radius, discs->omega[i]);
   o->moved[i] = !(o->painted && o->x[i] == x && o->y[i] == y && o->give[i] == give);
   if (!o->moved[i]) return;
   o->was_row[i] = o->row[i];
