@@ -336,6 +336,24 @@ Test(stability, fast_fluid_at_small_viscosity_is_held_by_the_default_rates)
   scene_clear(&scene);
 }
 
+/* The force that keeps the flux at zero must not overshoot where what it acts on is lighter than fluid. */
+Test(stability, light_discs_packed_in_a_closed_box_rise)
+{
+  struct scene scene = scene_box(100, 80, 0.05, SIDES_CLOSED);
+  scene.fluid.zero_flux = true;
+  scene.particles.gravity[1] = -1e-3;
+  for (int k = 0; k < 56; k++) scene_add_disc(&scene, 4.9, 0.1, 5.4 + 10.2 * (k % 8), 5.4 + 10.2 * (k / 8));
+  struct simulation *simulation = start(&scene);
+  const struct discs *d = simulation_discs(simulation);
+  double before = 0, after = 0;
+  for (size_t i = 0; i < d->count; i++) before += d->y[i] / 56;
+  advance(simulation, 3000);
+  for (size_t i = 0; i < d->count; i++) after += d->y[i] / 56;
+  cr_expect(after > before + 2, "from %g to %g", before, after);
+  simulation_destroy(simulation);
+  scene_clear(&scene);
+}
+
 /* Undamped inside, it moved against them by 0.03. */
 Test(stability, fluid_inside_the_discs_of_a_pile_moves_with_them)
 {

@@ -24,7 +24,8 @@ struct row_cover {
 };
 
 /* Updates n cells whose populations are read from a[i][0..n-1]. `cover` is NULL for fluid alone. With a force, sum[]
- * takes the momentum of the updated cells; without, it is left alone. */
+ * takes the momentum of the cells, the mean of before and after the collision and half of the force more: in fluid alone that is
+ * what they have afterwards, and inside discs that of the disc; without a force it is left alone. */
 typedef void sweep_row(void *const a[Q], int n, const struct sweep_constants *constants, const struct row_cover *cover,
                        double sum[2]);
 

@@ -125,8 +125,8 @@ static inline __attribute__((always_inline)) void collide_stream(void *const a[Q
       half_jy += half * Fy;
       quarter_tx += twelfth * Fx;
       quarter_ty += twelfth * Fy;
-      sum_x += jx + two * half_jx;
-      sum_y += jy + two * half_jy;
+      sum_x += jx + half_jx + half * Fx;
+      sum_y += jy + half_jy + half * Fy;
     }
 
     const REAL axis_x = quarter_S + quarter_pxx, axis_y = quarter_S - quarter_pxx;
