@@ -47,15 +47,16 @@ static bool read_and_go_on(const char *path, struct status *status)
 }
 
 /* Most inputs are refused by their head: those need no simulation, whose making takes most of the time. */
-static void examine_and_read(const char *path)
+static bool examine_and_read(const char *path)
 {
   struct checkpoint_head head;
   struct status status = {0};
   const bool restored = checkpoint_examine(path, FINGERPRINT, &head, &status) && read_and_go_on(path, &status);
   if (!restored && strlen(status.message) == 0) abort();
+  return restored;
 }
 
-/* With DELBM_SEED set, writes a checkpoint to that path instead: the corpus. */
+/* With DELBM_SEED set, writes a checkpoint to that path instead: the corpus. It is one that can be restored. */
 static void write_seed(const char *path)
 {
   struct scene scene = small_case();
@@ -69,6 +70,7 @@ static void write_seed(const char *path)
   }
   simulation_destroy(simulation);
   scene_clear(&scene);
+  if (!examine_and_read(path)) abort();
 }
 
 int LLVMFuzzerInitialize(int *argc, char ***argv);
