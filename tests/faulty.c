@@ -202,6 +202,18 @@ int ftruncate(int descriptor, off_t length)
   return is_to_fail(KIND_FILE, "ftruncate") ? no_room() : original(descriptor, length);
 }
 
+ssize_t pwrite(int descriptor, const void *data, size_t size, off_t at)
+{
+  ORIGINAL(pwrite)
+  return is_to_fail(KIND_FILE, "pwrite") ? no_room() : original(descriptor, data, size, at);
+}
+
+ssize_t pread(int descriptor, void *data, size_t size, off_t at)
+{
+  ORIGINAL(pread)
+  return is_to_fail(KIND_FILE, "pread") ? no_room() : original(descriptor, data, size, at);
+}
+
 off_t lseek(int descriptor, off_t offset, int whence)
 {
   ORIGINAL(lseek)

@@ -13,6 +13,8 @@ static const char *const small = "domain: {size: [40, 30], left: periodic, right
                                  "    - {radius: 5, position: [10, 5.5]}\n"
                                  "    - {radius: 4, position: [19, 6.5]}\n"
                                  "    - {radius: 3, position: [30, 20], fixed: true}\n"
+                                 "  fill: {pattern: jittered-grid, spacing: 6, radius: 2, jitter: 0.5, seed: 1, "
+                                 "region: [0, 12, 14, 28]}\n"
                                  "contact: {stiffness: 5}\n"
                                  "run: {steps: 9}\n"
                                  "output: {every: 2, checkpoint: {every: 3}, frames: {every: 4}}\n";
@@ -26,14 +28,16 @@ struct trial {
 
 /* Shell functions of the judges. */
 static const char *const functions =
-    "same() { cmp whole/particles.csv $1/particles.csv && diff -r whole/frames $1/frames; }\n"
+    "same() { cmp whole/particles.csv $1/particles.csv && diff -r whole/frames $1/frames && "
+    "if test -e whole/fields.h5; then cmp whole/fields.h5 $1/fields.h5 && cmp whole/fields.xdmf $1/fields.xdmf; fi; }\n"
     "told() { grep -qE \"^(delbm|libgomp): .*($1)\" err; }\n"
     "clean() { test -z \"$(find cut -name '*.tmp' 2>/dev/null)\"; }\n"
     "resumable() { if ls cut/checkpoint.[01] >/dev/null 2>&1; then $DELBM resume cut --steps 9 --quiet >/dev/null && "
     "same cut; "
     "fi; }\n";
 
-static const char *const no_memory = "case $code in 0) same cut ;; 1) told 'out of memory|Out of memory' ;; "
+static const char *const no_memory = "case $code in 0) same cut ;; 1) told 'out of memory|Out of memory' && "
+                                     "{ ! test -s out || { grep -q ' status=failed ' out && grep -q '\"status\": \"failed\"' cut/run.json; }; } ;; "
                                      "4) told 'Cannot allocate memory' ;; *) false ;; esac && clean && resumable";
 static const char *const no_file =
     "case $code in 0) same cut ;; 1) told 'out of memory: the fingerprint' ;; 4) told . ;; "

@@ -16,7 +16,9 @@ double memory_physical(void)
 
 static bool out_of_memory(const char *what, double bytes, struct status *status)
 {
-  return status_fail(status, DELBM_FAILED, "out of memory: %.3g GiB for %s", bytes / (1 << 30), what);
+  status_fail(status, DELBM_FAILED, "out of memory: %.3g GiB for %s", bytes / (1 << 30), what);
+  status->out_of_memory = true;
+  return false;
 }
 
 static size_t round_up(size_t n, size_t to)

@@ -12,6 +12,7 @@ enum { STATUS_MESSAGE = 1024 };
 
 struct status {
   enum delbm_code code;
+  bool out_of_memory; /* with DELBM_FAILED: nothing that the simulation has done */
   char message[STATUS_MESSAGE];
 };
 

@@ -37,7 +37,7 @@ static void listen_to_signals(void)
 static bool fail(struct run *run)
 {
   struct status ignored;
-  bool diverged = run->status.code == DELBM_FAILED && !simulation_check(run->simulation, &ignored);
+  bool diverged = run->status.code == DELBM_FAILED && !run->status.out_of_memory && !simulation_check(run->simulation, &ignored);
   run->outcome = diverged ? OUTCOME_DIVERGED : OUTCOME_FAILED;
   return false;
 }
@@ -50,7 +50,8 @@ static bool record(struct run *run, bool last)
 static bool advance(struct run *run, int64_t steps)
 {
   if (simulation_advance(run->simulation, steps, &run->status)) return true;
-  run->outcome = run->status.code == DELBM_FAILED ? OUTCOME_DIVERGED : OUTCOME_FAILED;
+  const bool diverged = run->status.code == DELBM_FAILED && !run->status.out_of_memory;
+  run->outcome = diverged ? OUTCOME_DIVERGED : OUTCOME_FAILED;
   return false;
 }
 

@@ -47,11 +47,13 @@ bool scene_fill(struct scene *scene, struct status *status)
   if (!memory_grow(&scene->particles.discs, &capacity, listed + added, sizeof *scene->particles.discs, "the discs",
                    status))
     return false;
-  gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
-  if (!random) return status_fail(status, DELBM_FAILED, "out of memory: random number generator");
-  gsl_rng_set(random, (unsigned long)fill->seed);
-  place_discs(fill, (size_t)columns, (size_t)rows, random, scene->particles.discs + listed);
-  gsl_rng_free(random);
+  /* not gsl_rng_alloc: without memory it aborts, unless the error handler of the whole process is another */
+  gsl_rng random = {.type = gsl_rng_mt19937,
+                    .state = memory_allocate(1, gsl_rng_mt19937->size, "random numbers", status)};
+  if (!random.state) return false;
+  gsl_rng_set(&random, (unsigned long)fill->seed);
+  place_discs(fill, (size_t)columns, (size_t)rows, &random, scene->particles.discs + listed);
+  free(random.state);
   scene->particles.count = listed + added;
   return true;
 }
