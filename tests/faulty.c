@@ -39,6 +39,18 @@ static bool is_to_fail(enum kind kind, const char *name)
   return true;
 }
 
+/* HDF5 does not survive a failure of its own allocations: it can crash, or close itself for ever. They are left alone. */
+static bool is_of_hdf5(const void *caller)
+{
+  Dl_info info;
+  return dladdr(caller, &info) != 0 && strstr(info.dli_fname, "hdf5");
+}
+
+static bool is_memory_to_fail(const char *name, const void *caller)
+{
+  return chosen == KIND_MEMORY && !is_of_hdf5(caller) && is_to_fail(KIND_MEMORY, name);
+}
+
 /* Runs after the constructors of the libraries: what these do is not the program's. */
 static __attribute__((constructor)) void arm(void)
 {
@@ -69,31 +81,32 @@ static int no_room(void)
 void *malloc(size_t size)
 {
   ORIGINAL(malloc)
-  return is_to_fail(KIND_MEMORY, "malloc") ? no_memory() : original(size);
+  return is_memory_to_fail("malloc", __builtin_return_address(0)) ? no_memory() : original(size);
 }
 
 void *calloc(size_t count, size_t size)
 {
   ORIGINAL(calloc)
-  return is_to_fail(KIND_MEMORY, "calloc") ? no_memory() : original(count, size);
+  return is_memory_to_fail("calloc", __builtin_return_address(0)) ? no_memory() : original(count, size);
 }
 
 void *realloc(void *pointer, size_t size)
 {
   ORIGINAL(realloc)
-  return is_to_fail(KIND_MEMORY, "realloc") ? no_memory() : original(pointer, size);
+  return is_memory_to_fail("realloc", __builtin_return_address(0)) ? no_memory() : original(pointer, size);
 }
 
 void *aligned_alloc(size_t alignment, size_t size)
 {
   ORIGINAL(aligned_alloc)
-  return is_to_fail(KIND_MEMORY, "aligned_alloc") ? no_memory() : original(alignment, size);
+  return is_memory_to_fail("aligned_alloc", __builtin_return_address(0)) ? no_memory() : original(alignment, size);
 }
 
 void *mmap(void *address, size_t length, int protection, int flags, int descriptor, off_t offset)
 {
   ORIGINAL(mmap)
-  if (!is_to_fail(KIND_MEMORY, "mmap")) return original(address, length, protection, flags, descriptor, offset);
+  if (!is_memory_to_fail("mmap", __builtin_return_address(0)))
+    return original(address, length, protection, flags, descriptor, offset);
   errno = ENOMEM;
   return MAP_FAILED;
 }

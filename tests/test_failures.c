@@ -36,9 +36,10 @@ static const char *const functions =
     "same cut; "
     "fi; }\n";
 
-static const char *const no_memory = "case $code in 0) same cut ;; 1) told 'out of memory|Out of memory' && "
-                                     "{ ! test -s out || { grep -q ' status=failed ' out && grep -q '\"status\": \"failed\"' cut/run.json; }; } ;; "
-                                     "4) told 'Cannot allocate memory' ;; *) false ;; esac && clean && resumable";
+static const char *const no_memory =
+    "case $code in 0) same cut ;; 1) told 'out of memory|Out of memory' && "
+    "{ ! test -s out || { grep -q ' status=failed ' out && grep -q '\"status\": \"failed\"' cut/run.json; }; } ;; "
+    "4) told 'Cannot allocate memory|HDF5' ;; *) false ;; esac && clean && resumable";
 static const char *const no_file =
     "case $code in 0) same cut ;; 1) told 'out of memory: the fingerprint' ;; 4) told . ;; "
     "*) false ;; esac && clean && resumable";
@@ -117,3 +118,40 @@ Test(failures, of_any_thread_end_a_run_with_words)
                             "test $code = 1 && told 'Thread creation failed'", 1},
             "");
 }
+
+#ifdef DELBM_HDF5
+/* The case with snapshots of the flow; a whole run of it, and a part from which to go on. */
+static const char *const with_fields = " --set output.fields.every=2";
+
+static void enter_with_fields(void)
+{
+  enter();
+  cr_assert_eq(shell("rm -rf whole part; $DELBM run small.yaml --quiet --out whole%s >/dev/null && "
+                     "$DELBM run small.yaml --quiet --set run.steps=5 --out part%s >/dev/null",
+                     with_fields, with_fields),
+               0);
+}
+
+TestSuite(failures_of_fields, .init = enter_with_fields, .fini = shell_leave, .timeout = 100 * SLOWNESS);
+
+Test(failures_of_fields, of_any_file_end_a_run_and_resume_with_words)
+{
+  try_calls(&(struct trial){"file", "run small.yaml --quiet --out cut --set output.fields.every=2", "", no_file, 47},
+            "");
+  try_calls(&(struct trial){"file", "resume cut --steps 9 --quiet", "cp -r part cut", no_file, 47}, "");
+}
+
+Test(failures_of_fields, of_all_files_from_some_point_on_leave_the_last_good_checkpoint)
+{
+  try_calls(
+      &(struct trial){"file", "run small.yaml --quiet --out cut --set output.fields.every=2", "", no_room_at_all, 97},
+      " on");
+}
+
+Test(failures_of_fields, of_any_allocation_end_a_run_with_words)
+{
+  try_calls(
+      &(struct trial){"memory", "run small.yaml --quiet --out cut --set output.fields.every=2", "", no_memory, 397},
+      "");
+}
+#endif

@@ -51,15 +51,19 @@ static bool create(struct fields **fields, const struct scene *scene, const char
          (f->sample.pressure = allocate(count, status)) && (f->sample.occupation = allocate(count, status));
 }
 
-static size_t count_points(hid_t root, const char *snapshot)
+/* How many discs and images a snapshot holds; negative when that cannot be read. */
+static hssize_t count_points(hid_t root, const char *snapshot)
 {
-  char path[64];
-  snprintf(path, sizeof path, "%s/discs/id", snapshot);
+  char group[64], path[80];
+  snprintf(group, sizeof group, "%s/discs", snapshot);
+  snprintf(path, sizeof path, "%s/id", group);
+  const htri_t exists = H5Lexists(root, group, H5P_DEFAULT);
+  if (exists <= 0) return exists;
   const hid_t set = H5Dopen2(root, path, H5P_DEFAULT), space = set < 0 ? -1 : H5Dget_space(set);
-  const hssize_t count = space < 0 ? 0 : H5Sget_simple_extent_npoints(space);
+  const hssize_t count = space < 0 ? -1 : H5Sget_simple_extent_npoints(space);
   if (space >= 0) H5Sclose(space);
   if (set >= 0) H5Dclose(set);
-  return (size_t)count;
+  return count;
 }
 
 static herr_t note_snapshot(hid_t root, const char *name, const H5L_info_t *info, void *context)
@@ -67,9 +71,11 @@ static herr_t note_snapshot(hid_t root, const char *name, const H5L_info_t *info
   (void)info;
   struct snapshots *list = context;
   struct status ignored;
+  const hssize_t points = count_points(root, name);
+  if (points < 0) return -1;
   if (!memory_grow(&list->items, &list->capacity, list->count + 1, sizeof *list->items, "the snapshots", &ignored))
     return -1;
-  list->items[list->count++] = (struct snapshot){strtoll(name, NULL, 10), count_points(root, name)};
+  list->items[list->count++] = (struct snapshot){strtoll(name, NULL, 10), (size_t)points};
   return 0;
 }
 
