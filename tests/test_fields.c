@@ -103,7 +103,7 @@ static void enter(void)
   shell_write("flow.yaml", flow);
 }
 
-TestSuite(fields, .init = enter, .fini = shell_leave, .timeout = 120);
+TestSuite(fields, .init = enter, .fini = shell_leave, .timeout = 120 * SLOWNESS);
 
 /* Debian's Python, which has h5py (python3-h5py), may not be the first on the path. */
 static const char *python(void)

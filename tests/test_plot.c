@@ -18,7 +18,7 @@ static void enter(void)
   cr_assert_eq(shell("$DELBM run pair.yaml --quiet --out o >/dev/null"), 0);
 }
 
-TestSuite(plot, .init = enter, .fini = shell_leave, .timeout = 60);
+TestSuite(plot, .init = enter, .fini = shell_leave, .timeout = 60 * SLOWNESS);
 
 static void need_gnuplot(void)
 {
