@@ -319,3 +319,54 @@ Test(program, info_warns_of_what_the_maps_found_to_fail)
                        cases[k].settings, cases[k].note),
                  0, "%s: no note", cases[k].settings);
 }
+
+Test(program, info_warns_once_of_small_viscosity)
+{
+  shell_write("thin.yaml", "domain: {size: [32, 32]}\nfluid: {viscosity: 0.0009}\nrun: {steps: 3}\n");
+  for (int k = 0; k < 4; k++) {
+    static const char *const operators[] = {"bgk", "trt", "mrt", "adaptive"};
+    cr_expect_eq(
+        shell("test $(%s info thin.yaml --set fluid.collision=%s | grep -c 'note: .*reliable above Mach 0.2') = 1 && "
+              "test $(%s info thin.yaml --set fluid.collision=%s | grep -c 'note: ') = 1",
+              DELBM, operators[k], DELBM, operators[k]),
+        0);
+  }
+}
+
+/* The figure of info against that of run.json, MiB; a build with sanitizers takes more. */
+static void expect_enough_memory(const char *settings)
+{
+  cr_expect_eq(shell("%s run crowd.yaml --quiet --out o %s >/dev/null && "
+                     "taken=$(sed -n 's/^ *\"peak_rss_mib\": \\([0-9.]*\\).*/\\1/p' o/run.json) && "
+                     "told=$(%s info crowd.yaml %s | sed -n 's/^memory.*in all \\([0-9.]*\\) MiB$/\\1/p') && "
+                     "echo \"taken $taken told $told\" && "
+                     "awk \"BEGIN { exit !($taken <= $told && $told < 1.6 * $taken) }\"",
+                     DELBM, settings, DELBM, settings),
+               0, "%s", settings);
+}
+
+Test(program, takes_no_more_memory_than_info_says_and_not_much_less)
+{
+  if (SLOWNESS > 1) cr_skip_test("a sanitizer takes memory of its own");
+  setenv("OMP_NUM_THREADS", "2", 1);
+  shell_write("crowd.yaml",
+              "domain: {size: [600, 600]}\n"
+              "fluid: {viscosity: 0.05}\n"
+              "particles:\n"
+              "  density: 1.2\n"
+              "  gravity: [0, -1e-3]\n"
+              "  fill: {pattern: jittered-grid, spacing: 4.2, radius: 2, density: 1.2, jitter: 0.1, seed: 3}\n"
+              "contact: {stiffness: 5}\n"
+              "run: {steps: 10}\n"
+              "output: {every: 0}\n");
+  expect_enough_memory("");
+  expect_enough_memory("--set particles={}");
+  expect_enough_memory("--set contact.search=linked-cell");
+  expect_enough_memory("--set contact.area=cells");
+#ifdef DELBM_PNG
+  expect_enough_memory("--set output.frames.every=5");
+#endif
+#ifdef DELBM_HDF5
+  expect_enough_memory("--set output.fields.every=5");
+#endif
+}

@@ -258,14 +258,19 @@ Test(memory, that_a_run_would_take_is_known_and_too_much_is_refused_by_key)
   struct status status;
   struct scene scene = scene_box(1000, 1000, 0.1, SIDES_CLOSED);
   const double mib = 1 << 20;
-  cr_expect(footprint_check(&scene, 75 * mib, &status));
+  cr_expect(footprint_check(&scene, 90 * mib, &status));
   cr_expect_not(footprint_check(&scene, 68 * mib, &status));
   cr_expect_eq(status.code, DELBM_INVALID);
-  cr_expect(strstr(status.message, "domain.size: the run would take 0.0683 GiB of memory (fluid 0.0683, discs 0, "
-                                   "frames 0), and this machine has 0.0664"),
+  cr_expect(strstr(status.message, "domain.size: the run would take 0.0839 GiB of memory (fluid 0.0683, discs 0, "
+                                   "contacts 0, fields 0, frames 0, program 0.0156), and this machine has 0.0664"),
             "%s", status.message);
   scene.output.frames.every = 1;
-  cr_expect_not(footprint_check(&scene, 75 * mib, &status));
+  cr_expect_not(footprint_check(&scene, 90 * mib, &status));
+  scene.output.frames.every = 0;
+  scene.output.fields.every = scene.output.fields.stride = 1;
+  scene.output.fields.region[2] = scene.output.fields.region[3] = 1000;
+  cr_expect_not(footprint_check(&scene, 140 * mib, &status));
+  cr_expect(strstr(status.message, "fields 0.05"), "%s", status.message);
   scene_clear(&scene);
   scene = scene_box(100, 100, 0.1, SIDES_CLOSED);
   for (int k = 0; k < 40; k++) scene_add_disc(&scene, 30, 1, 30 + k, 50);

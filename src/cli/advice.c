@@ -14,9 +14,6 @@ static void advise_rates(const struct scene *scene)
         "  note: s_q %.3g beside s_e %.3g diverges first of all choices at small viscosity; collision: adaptive is as "
         "accurate in slow flow and goes as far as any (bench/README.md, stability)\n",
         rates->q, rates->e);
-  else if (scene->fluid.viscosity < 0.001)
-    printf("  note: viscosity below 0.001; no collision operator is reliable there above Mach 0.2 (bench/README.md, "
-           "stability)\n");
 }
 
 /* Map "density of a settling disc". */

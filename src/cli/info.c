@@ -100,7 +100,9 @@ static void print_fluid(const struct scene *scene)
     advise_viscosity(scene, (1.5 - 0.5) / 3);
   }
   if (tau < least_tau) {
-    printf("  note: tau below %g, close to 1/2: hardly any damping of what goes wrong; better: ", least_tau);
+    printf("  note: tau below %g, close to 1/2: hardly any damping of what goes wrong, and no collision operator is "
+           "reliable above Mach 0.2 (bench/README.md, stability); better: ",
+           least_tau);
     advise_viscosity(scene, (least_tau - 0.5) / 3);
   }
 }
@@ -226,8 +228,10 @@ static void print_memory(const struct scene *scene)
   if (scene->particles.count > 0)
     printf(", discs %.4g MiB (%.0f bytes a disc)", footprint.discs / mib,
            footprint.discs / (double)scene->particles.count);
+  if (footprint.contacts > 0) printf(", contacts %.4g MiB", footprint.contacts / mib);
+  if (footprint.fields > 0) printf(", fields %.4g MiB", footprint.fields / mib);
   if (footprint.frames > 0) printf(", frames %.4g MiB", footprint.frames / mib);
-  printf("\n");
+  printf(", in all %.4g MiB\n", footprint_total(&footprint) / mib);
   if (footprint_total(&footprint) > most)
     printf("  note: more than the %.4g MiB of this machine; it would not be run here\n", most / mib);
 }

@@ -37,7 +37,8 @@ static void listen_to_signals(void)
 static bool fail(struct run *run)
 {
   struct status ignored;
-  bool diverged = run->status.code == DELBM_FAILED && !run->status.out_of_memory && !simulation_check(run->simulation, &ignored);
+  bool diverged =
+      run->status.code == DELBM_FAILED && !run->status.out_of_memory && !simulation_check(run->simulation, &ignored);
   run->outcome = diverged ? OUTCOME_DIVERGED : OUTCOME_FAILED;
   return false;
 }

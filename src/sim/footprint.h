@@ -5,11 +5,14 @@
 
 #include "scene/scene.h"
 
-/* Bytes. Contacts are left out: how many there will be nobody knows. */
+/* Bytes, rather more than less. */
 struct footprint {
-  double fluid;  /* the populations */
-  double discs;  /* their list and state, and the cells they cover, of this step and the next */
-  double frames; /* the velocities that pictures are drawn from */
+  double fluid;    /* the populations */
+  double discs;    /* their list and state, and the cells they cover, of this step and the next */
+  double contacts; /* pairs and sides, as many as a dense packing has, and what they are found by */
+  double fields;   /* the samples of a snapshot, and discs as points */
+  double frames;   /* the velocities that pictures are drawn from */
+  double program;  /* itself, and what libraries hold */
 };
 struct footprint footprint_of(const struct scene *scene);
 
