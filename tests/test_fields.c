@@ -338,6 +338,27 @@ Test(fields, file_that_was_changed_is_refused)
   cr_expect_eq(shell("grep -q 'a/fields.h5 has 9 bytes, fewer than' err"), 0);
 }
 
+Test(fields, of_other_samples_are_refused_on_resume_by_key_and_those_of_before_go_on)
+{
+  static const struct {
+    const char *from, *to, *said;
+  } changes[] = {{"stride: 3", "stride: 2", "output.fields.stride is 2, but the snapshots in cut/fields.h5 have 3"},
+                 {"region: \\[10,", "region: [13,", "output.fields.region gives 33 x 31 samples from cell (13, 5) on"},
+                 {", 96\\]", ", 99]", "output.fields.region gives 34 x 32 samples from cell (10, 5) on"}};
+  cr_assert_eq(shell("$DELBM run flow.yaml --quiet --set output.checkpoint.every=100 --out whole >/dev/null && "
+                     "$DELBM run flow.yaml --quiet --set run.steps=150 --set output.checkpoint.every=100 --out cut "
+                     ">/dev/null && cp cut/case.yaml ."),
+               0);
+  for (size_t k = 0; k < sizeof changes / sizeof changes[0]; k++) {
+    cr_assert_eq(shell("sed 's/%s/%s/' case.yaml >cut/case.yaml; cmp -s case.yaml cut/case.yaml", changes[k].from,
+                       changes[k].to),
+                 1);
+    cr_expect_eq(shell("$DELBM resume cut --quiet --steps 250 2>err"), 3);
+    cr_expect_eq(shell("grep -qF '%s' err || { cat err; false; }", changes[k].said), 0);
+  }
+  cr_expect_eq(shell("cp case.yaml cut && $DELBM resume cut --quiet --steps 250 >/dev/null"), 0);
+}
+
 Test(fields, that_do_not_fit_on_the_disk_leave_the_earlier_ones)
 {
   if (shell("unshare -m mount -t tmpfs tmpfs /mnt 2>/dev/null") != 0) cr_skip_test("mounting needs root");

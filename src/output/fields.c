@@ -8,6 +8,7 @@
 
 #include <inttypes.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Elements of a chunk, about: half a megabyte. Deflate at its fastest: higher levels cost more than they save. */
 enum { CHUNK = 1 << 16, DEFLATE = 1 };
@@ -85,6 +86,53 @@ static int compare_steps(const void *a, const void *b)
   return (left->step > right->step) - (left->step < right->step);
 }
 
+static bool read_numbers(hid_t object, const char *name, int64_t *numbers)
+{
+  const hid_t attribute = H5Aopen(object, name, H5P_DEFAULT);
+  const bool read = attribute >= 0 && H5Aread(attribute, H5T_NATIVE_INT64, numbers) >= 0;
+  if (attribute >= 0) H5Aclose(attribute);
+  return read;
+}
+
+/* Where the samples of a snapshot lie. */
+static bool read_grid(hid_t root, int64_t step, struct sample_grid *grid)
+{
+  char path[64];
+  int64_t first[2], stride;
+  hsize_t size[2];
+  snprintf(path, sizeof path, "%08" PRId64 "/rho", step);
+  const hid_t set = H5Dopen2(root, path, H5P_DEFAULT), space = set < 0 ? -1 : H5Dget_space(set);
+  const bool read = space >= 0 && H5Sget_simple_extent_ndims(space) == 2 &&
+                    H5Sget_simple_extent_dims(space, size, NULL) == 2 && read_numbers(root, "first_cell", first) &&
+                    read_numbers(root, "stride", &stride);
+  if (space >= 0) H5Sclose(space);
+  if (set >= 0) H5Dclose(set);
+  if (read)
+    *grid = (struct sample_grid){
+        .first = {(int)first[0], (int)first[1]}, .count = {(int)size[1], (int)size[0]}, .stride = (int)stride};
+  return read;
+}
+
+/* Snapshots to come must lie where those before lie: they are one series. */
+static bool check_grid(const struct fields *f, hid_t root, int64_t step, struct status *status)
+{
+  struct sample_grid was;
+  const struct sample_grid *is = &f->grid;
+  if (!read_grid(root, step, &was))
+    return status_fail(status, DELBM_IO, "cannot read %s: HDF5 does not tell the grid of step %" PRId64, f->path, step);
+  if (was.stride != is->stride)
+    return status_fail(status, DELBM_INVALID, "output.fields.stride is %d, but the snapshots in %s have %d", is->stride,
+                       f->path, was.stride);
+  if (memcmp(was.first, is->first, sizeof was.first) == 0 && memcmp(was.count, is->count, sizeof was.count) == 0)
+    return true;
+  return status_fail(
+      status, DELBM_INVALID,
+      "output.fields.region gives %d x %d samples from cell (%d, %d) on, but the snapshots in %s have %d "
+      "x %d from (%d, %d) on",
+      is->count[0], is->count[1], is->first[0], is->first[1], f->path, was.count[0], was.count[1], was.first[0],
+      was.first[1]);
+}
+
 /* Lists the snapshots of fields.h5 in fields.xdmf. */
 static bool list_snapshots(struct fields *f, struct status *status)
 {
@@ -93,8 +141,10 @@ static bool list_snapshots(struct fields *f, struct status *status)
   if (f->file.length == 0) return true;
   if (!hdf5_open(&open, &f->file, status)) return false;
   bool listed = H5Literate(open.handle, H5_INDEX_NAME, H5_ITER_NATIVE, NULL, note_snapshot, &list) >= 0;
+  struct status ignored;
   if (!listed) status_fail(status, DELBM_IO, "cannot read %s: HDF5 does not list it", f->path);
-  listed = hdf5_close(&open, status) && listed;
+  if (listed && list.count > 0) listed = check_grid(f, open.handle, list.items[0].step, status);
+  listed = hdf5_close(&open, listed ? status : &ignored) && listed;
   if (list.count > 0) qsort(list.items, list.count, sizeof *list.items, compare_steps);
   for (size_t k = 0; listed && k < list.count; k++)
     listed = xdmf_add(&f->xdmf, list.items[k].step, list.items[k].points, status);

@@ -27,8 +27,8 @@ enum { FIELDS_SUPPORTED = 1 };
 enum { FIELDS_SUPPORTED = 0 };
 #endif
 
-/* Starts both files in the folder, anew or, where `mark` is not NULL, from a mark of fields.h5. The scene must outlive
- * the fields. */
+/* Starts both files in the folder, anew or, where `mark` is not NULL, from a mark of fields.h5: then snapshots to come
+ * must have the samples of those before (DELBM_INVALID, naming the key). The scene must outlive the fields. */
 bool fields_open(struct fields **fields, const struct scene *scene, const char *directory,
                  const struct reversible_mark *mark, struct status *status);
 
