@@ -1,6 +1,10 @@
 #include "api/description.h"
 
+#include "base/memory.h"
+
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 /* Enumerations are written by name; what is none of them by number, which reading refuses. */
 static void write_name(const char *const names[], unsigned count, unsigned index, FILE *text)
@@ -54,12 +58,35 @@ static void write_scene(const struct delbm_scene *scene, FILE *text)
   for (size_t i = 0; i < scene->disc_count; i++) write_disc(&scene->discs[i], text);
 }
 
+/* A text that grows. Not open_memstream, which loses what it has no memory for and says so to nobody. */
+struct growing {
+  char *bytes;
+  size_t length, capacity;
+  struct status *status;
+};
+
+static ssize_t append(void *cookie, const char *bytes, size_t count)
+{
+  struct growing *text = cookie;
+  if (!memory_grow(&text->bytes, &text->capacity, text->length + count, 1, "the description of the scene",
+                   text->status))
+    return 0;
+  memcpy(text->bytes + text->length, bytes, count);
+  text->length += count;
+  return (ssize_t)count;
+}
+
 char *description_write(const struct delbm_scene *scene, size_t *size, struct status *status)
 {
-  char *text = NULL;
-  FILE *stream = open_memstream(&text, size);
-  if (stream) write_scene(scene, stream);
-  if (stream && fclose(stream) == 0) return text;
+  struct growing text = {.status = status};
   status_fail(status, DELBM_FAILED, "out of memory: the description of the scene");
+  FILE *stream = fopencookie(&text, "w", (cookie_io_functions_t){.write = append});
+  if (stream) write_scene(scene, stream);
+  const bool failed = !stream || ferror(stream);
+  if (stream && fclose(stream) == 0 && !failed) {
+    *size = text.length;
+    return text.bytes;
+  }
+  free(text.bytes);
   return NULL;
 }

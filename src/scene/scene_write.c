@@ -221,14 +221,19 @@ bool scene_write(const struct scene *scene, FILE *file)
   return fflush(file) == 0 && !ferror(file);
 }
 
+static ssize_t add_to_sum(void *cookie, const char *bytes, size_t count)
+{
+  uint32_t *sum = cookie;
+  *sum = (uint32_t)crc32_z(*sum, (const void *)bytes, count);
+  return (ssize_t)count;
+}
+
 bool scene_fingerprint(const struct scene *scene, uint32_t *fingerprint, struct status *status)
 {
-  char *text = NULL;
-  size_t length = 0;
-  FILE *stream = open_memstream(&text, &length);
+  *fingerprint = 0;
+  /* not open_memstream, which loses what it has no memory for and says so to nobody */
+  FILE *stream = fopencookie(fingerprint, "w", (cookie_io_functions_t){.write = add_to_sum});
   if (stream) write_case(scene, true, stream);
-  const bool written = stream && fclose(stream) == 0;
-  if (written) *fingerprint = (uint32_t)crc32_z(0, (const void *)text, length);
-  free(text);
-  return written || status_fail(status, DELBM_FAILED, "out of memory: the fingerprint of the case");
+  return (stream && fclose(stream) == 0) ||
+         status_fail(status, DELBM_FAILED, "out of memory: the fingerprint of the case");
 }
