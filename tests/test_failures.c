@@ -17,7 +17,11 @@ static const char *const small = "domain: {size: [40, 30], left: periodic, right
                                  "region: [0, 12, 14, 28]}\n"
                                  "contact: {stiffness: 5}\n"
                                  "run: {steps: 9}\n"
+#ifdef DELBM_PNG
                                  "output: {every: 2, checkpoint: {every: 3}, frames: {every: 4}}\n";
+#else
+                                 "output: {every: 2, checkpoint: {every: 3}}\n";
+#endif
 
 /* What is made to fail, of which command, and how its end is judged: by a script that returns 0, in which `code` is the
  * exit code. */
@@ -28,7 +32,8 @@ struct trial {
 
 /* Shell functions of the judges. */
 static const char *const functions =
-    "same() { cmp whole/particles.csv $1/particles.csv && diff -r whole/frames $1/frames && "
+    "same() { cmp whole/particles.csv $1/particles.csv && "
+    "if test -e whole/frames; then diff -r whole/frames $1/frames; fi && "
     "if test -e whole/fields.h5; then cmp whole/fields.h5 $1/fields.h5 && cmp whole/fields.xdmf $1/fields.xdmf; fi; }\n"
     "told() { grep -qE \"^(delbm|libgomp): .*($1)\" err; }\n"
     "clean() { test -z \"$(find cut -name '*.tmp' 2>/dev/null)\"; }\n"
@@ -38,7 +43,7 @@ static const char *const functions =
 
 static const char *const no_memory =
     "case $code in 0) same cut ;; 1) told 'out of memory|Out of memory' && "
-    "{ ! test -s out || { grep -q ' status=failed ' out && grep -q '\"status\": \"failed\"' cut/run.json; }; } ;; "
+    "{ ! test -s out || grep -q ' status=failed ' out; } && ! grep -qs diverged cut/run.json ;; "
     "4) told 'Cannot allocate memory|HDF5' ;; *) false ;; esac && clean && resumable";
 static const char *const no_file =
     "case $code in 0) same cut ;; 1) told 'out of memory: the fingerprint' ;; 4) told . ;; "

@@ -69,11 +69,18 @@ Test(program, particles_csv_has_the_same_bits_for_any_number_of_threads)
 
 Test(program, a_run_leaves_the_files_that_scripts_rely_on)
 {
+#ifdef DELBM_PNG
+  const char *frames = "--set output.frames.every=20";
+#else
+  const char *frames = "";
+#endif
   shell_write("crowd.yaml", crowd);
-  cr_assert_eq(shell("%s run crowd.yaml --set run.steps=40 --set output.frames.every=20 --out o >out 2>err", DELBM), 0);
+  cr_assert_eq(shell("%s run crowd.yaml --set run.steps=40 %s --out o >out 2>err", DELBM, frames), 0);
   cr_expect(contains("o/particles.csv",
                      "step,id,x,y,vx,vy,omega,angle,fx,fy,torque,contact_fx,contact_fy,contact_torque\n0,0,"));
+#ifdef DELBM_PNG
   cr_expect_eq(shell("test -s o/frames/00000000.png -a -s o/frames/00000020.png -a -s o/frames/00000040.png"), 0);
+#endif
   static const char *const keys[] = {"status", "steps",      "seconds",        "mlups",    "threads",      "kernel",
                                      "stages", "mass_drift", "momentum_drift", "max_mach", "peak_rss_mib", "precision"};
   for (size_t k = 0; k < sizeof keys / sizeof keys[0]; k++) {
@@ -85,7 +92,9 @@ Test(program, a_run_leaves_the_files_that_scripts_rely_on)
   /* the case as run is a case again, and the same one */
   cr_assert_eq(shell("%s run o/case.yaml --quiet --out again >/dev/null", DELBM), 0);
   cr_expect_eq(shell("cmp o/particles.csv again/particles.csv && cmp o/case.yaml again/case.yaml"), 0);
+#ifdef DELBM_PNG
   cr_expect_eq(shell("cmp o/frames/00000040.png again/frames/00000040.png"), 0);
+#endif
 }
 
 Test(program, a_diverging_run_stops_says_so_and_keeps_what_it_wrote)
@@ -159,8 +168,10 @@ Test(program, analyse_reports_a_run_and_refuses_what_is_none)
 Test(program, an_interrupted_run_ends_in_order)
 {
   shell_write("crowd.yaml", crowd);
-  cr_assert_eq(shell("timeout -s INT 1 %s run crowd.yaml --set run.steps=100000000 --quiet --out o >out 2>err; "
-                     "grep -q status=interrupted out",
+  /* once it has written rows: before, nobody may be listening */
+  cr_assert_eq(shell("%s run crowd.yaml --set run.steps=100000000 --quiet --out o >out 2>err & p=$!; "
+                     "while kill -0 $p && test $(cat o/particles.csv 2>/dev/null | wc -l) -le 1; do sleep 0.05; done; "
+                     "kill -INT $p; wait $p; test $? = 130 && grep -q status=interrupted out",
                      DELBM),
                0);
   cr_expect(contains("o/run.json", "\"status\": \"interrupted\""));
@@ -259,6 +270,9 @@ Test(program, the_manual_page_has_every_command)
 /* The case `dkt`, shortened, and the program by its name, as the README's lines expect them. */
 static void prepare_sweep(void)
 {
+#ifndef DELBM_PNG
+  cr_skip_test("the case of the sweep has frames");
+#endif
   cr_assert_eq(shell("mkdir -p cases/dkt bin && ln -s $DELBM bin/delbm && "
                      "sed 's/steps: .*/steps: 2/' %s/../cases/dkt/case.yaml >cases/dkt/case.yaml",
                      TEST_DIR),

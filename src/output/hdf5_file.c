@@ -103,6 +103,7 @@ static const H5FD_class_t driver = {
 
 bool hdf5_open(struct hdf5_file *open, struct reversible *file, struct status *status)
 {
+  H5dont_atexit(); /* all is closed by then, and of a file that could not be closed HDF5 would crash at the exit */
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL); /* errors are told by us */
   *open = (struct hdf5_file){.file = file, .handle = -1, .driver = H5FDregister(&driver)};
   const hid_t access = H5Pcreate(H5P_FILE_ACCESS);

@@ -234,6 +234,7 @@ bool scene_fingerprint(const struct scene *scene, uint32_t *fingerprint, struct 
   /* not open_memstream, which loses what it has no memory for and says so to nobody */
   FILE *stream = fopencookie(fingerprint, "w", (cookie_io_functions_t){.write = add_to_sum});
   if (stream) write_case(scene, true, stream);
-  return (stream && fclose(stream) == 0) ||
+  const bool failed = !stream || ferror(stream);
+  return (stream && fclose(stream) == 0 && !failed) ||
          status_fail(status, DELBM_FAILED, "out of memory: the fingerprint of the case");
 }
