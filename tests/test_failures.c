@@ -141,22 +141,22 @@ TestSuite(failures_of_fields, .init = enter_with_fields, .fini = shell_leave, .t
 
 Test(failures_of_fields, of_any_file_end_a_run_and_resume_with_words)
 {
-  try_calls(&(struct trial){"file", "run small.yaml --quiet --out cut --set output.fields.every=2", "", no_file, 47},
+  try_calls(&(struct trial){"file", "run small.yaml --quiet --out cut --set output.fields.every=2", "", no_file, 149},
             "");
-  try_calls(&(struct trial){"file", "resume cut --steps 9 --quiet", "cp -r part cut", no_file, 47}, "");
+  try_calls(&(struct trial){"file", "resume cut --steps 9 --quiet", "cp -r part cut", no_file, 149}, "");
 }
 
 Test(failures_of_fields, of_all_files_from_some_point_on_leave_the_last_good_checkpoint)
 {
   try_calls(
-      &(struct trial){"file", "run small.yaml --quiet --out cut --set output.fields.every=2", "", no_room_at_all, 97},
+      &(struct trial){"file", "run small.yaml --quiet --out cut --set output.fields.every=2", "", no_room_at_all, 293},
       " on");
 }
 
 Test(failures_of_fields, of_any_allocation_end_a_run_with_words)
 {
   try_calls(
-      &(struct trial){"memory", "run small.yaml --quiet --out cut --set output.fields.every=2", "", no_memory, 397},
+      &(struct trial){"memory", "run small.yaml --quiet --out cut --set output.fields.every=2", "", no_memory, 997},
       "");
 }
 #endif
