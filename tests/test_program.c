@@ -322,6 +322,7 @@ Test(program, info_warns_of_what_the_maps_found_to_fail)
       {"--set coupling.form=owen --set 'particles={discs: [{radius: 9, position: [90, 90], fixed: true, spin: "
        "0.004}]}'",
        "is made to spin"},
+      {"--set coupling.form=owen --set run.steps=50000", "shake each other"},
       {"--set coupling.form=unified --set fluid.viscosity=0.05", "too little drag"},
       {"--set contact.substeps=1 --set contact.stiffness=1000", "1 sub-steps are fewer than"},
       {"--set 'particles.gravity=[0, -0.02]'", "of the fluid's pressure"},
