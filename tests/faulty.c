@@ -5,6 +5,7 @@
 #include <dirent.h>
 #include <dlfcn.h>
 #include <errno.h>
+#include <execinfo.h>
 #include <fcntl.h>
 #include <pthread.h>
 #include <stdarg.h>
@@ -39,12 +40,28 @@ static bool is_to_fail(enum kind kind, const char *name)
   return true;
 }
 
-/* HDF5 does not survive a failure of its own allocations: it can crash, or close itself for ever. They are left alone.
- * Not inlined: a sanitizer's own start comes by malloc, before variables on the stack can be watched. */
+/* HDF5 does not survive a failure of its own allocations, or of those of a library that it calls: it can crash, or close
+ * itself for ever. They are left alone: those that, seen from the caller outwards, come to HDF5 before they come to us. Not
+ * inlined: a sanitizer's own start comes by malloc, before variables on the stack can be watched. */
 static __attribute__((noinline)) bool is_of_hdf5(const void *caller)
 {
-  Dl_info info;
-  return dladdr(caller, &info) != 0 && strstr(info.dli_fname, "hdf5");
+  static _Thread_local bool looking;
+  static char ours;
+  void *frame[24];
+  Dl_info self, at;
+  if (looking) return true; /* what looking itself allocates at first */
+  looking = true;
+  const int count = backtrace(frame, sizeof frame / sizeof frame[0]);
+  int k = 0;
+  while (k < count && frame[k] != caller) k++;
+  bool found = false, known = dladdr(&ours, &self) != 0;
+  for (; k < count && known && !found; k++) {
+    if (!dladdr(frame[k], &at)) continue;
+    known = at.dli_fbase != self.dli_fbase;
+    found = strstr(at.dli_fname, "hdf5") != NULL;
+  }
+  looking = false;
+  return found;
 }
 
 static bool is_memory_to_fail(const char *name, const void *caller)
