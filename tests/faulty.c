@@ -1,7 +1,7 @@
 /* Failures on demand. This is linked into a program of its own, `delbm-faulty`, where it takes the place of functions of
  * the C library, for the program and for the libraries that it uses. DELBM_FAIL="memory 17" lets the 17th allocation
- * after the start of main fail, and so on for `thread` and `file`; "memory 17 on" also all that follow. A call that is
- * made to fail is named in the file DELBM_FAILED_AT. The delbm that is installed has nothing of this. */
+ * after the start of main fail, and so on for `thread`, `file` and the name of a function, "lseek 2"; "memory 17 on" also
+ * all that follow. A call that is made to fail is named in the file DELBM_FAILED_AT. The delbm that is installed has nothing of this. */
 #include <dirent.h>
 #include <dlfcn.h>
 #include <errno.h>
@@ -21,6 +21,7 @@
 enum kind { KIND_NONE, KIND_MEMORY, KIND_THREAD, KIND_FILE };
 
 static enum kind chosen;
+static char chosen_name[16];
 static long chosen_call;
 static bool lasting;
 static atomic_long calls;
@@ -33,7 +34,7 @@ static int report = -1;
 
 static bool is_to_fail(enum kind kind, const char *name)
 {
-  if (kind != chosen) return false;
+  if (kind != chosen && strcmp(name, chosen_name) != 0) return false;
   const long call = atomic_fetch_add(&calls, 1) + 1;
   if (call < chosen_call || (call > chosen_call && !lasting)) return false;
   if (call == chosen_call && report >= 0) dprintf(report, "%s\n", name);
@@ -74,14 +75,14 @@ static __attribute__((constructor)) void arm(void)
 {
   static const char *const names[] = {"none", "memory", "thread", "file"};
   const char *wish = getenv("DELBM_FAIL"), *path = getenv("DELBM_FAILED_AT");
-  char name[16] = "", on[4] = "";
+  char on[4] = "";
   long call = 0;
-  if (!wish || sscanf(wish, "%15s %ld %3s", name, &call, on) < 2) return;
+  if (!wish || sscanf(wish, "%15s %ld %3s", chosen_name, &call, on) < 2) return;
   if (path) report = open(path, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
   chosen_call = call;
   lasting = strcmp(on, "on") == 0;
   for (int kind = KIND_MEMORY; kind <= KIND_FILE; kind++)
-    if (strcmp(name, names[kind]) == 0) chosen = (enum kind)kind;
+    if (strcmp(chosen_name, names[kind]) == 0) chosen = (enum kind)kind;
 }
 
 static void *no_memory(void)

@@ -338,6 +338,16 @@ Test(fields, file_that_was_changed_is_refused)
   cr_expect_eq(shell("grep -q 'a/fields.h5 has 9 bytes, fewer than' err"), 0);
 }
 
+Test(fields, without_their_way_back_are_left_as_they_are)
+{
+  cr_assert_eq(shell("$DELBM run flow.yaml --set output.checkpoint.every=70 --quiet --out a >/dev/null; "
+                     "cp a/fields.h5 .; truncate -s 9 a/fields.h5.undo; $DELBM resume a --steps 260 2>err"),
+               4);
+  cr_expect_eq(shell("grep -q 'a/fields.h5.undo has 9 bytes, fewer than' err && cmp fields.h5 a/fields.h5"), 0);
+  cr_assert_eq(shell("rm a/fields.h5.undo; $DELBM resume a --steps 260 2>err"), 4);
+  cr_expect_eq(shell("grep -q 'cannot open a/fields.h5.undo: No such file' err && cmp fields.h5 a/fields.h5"), 0);
+}
+
 Test(fields, of_other_samples_are_refused_on_resume_by_key_and_those_of_before_go_on)
 {
   static const struct {

@@ -156,11 +156,7 @@ bool csv_open(struct csv **csv, const char *path, const struct units *units, str
 /* Cuts the file to a length that it must have. */
 static bool cut_back(struct csv *csv, int64_t length, struct status *status)
 {
-  const off_t end = lseek(csv->descriptor, 0, SEEK_END);
-  if (end < 0) return file_fail(status, "read", csv->path, errno);
-  if (end < length)
-    return status_fail(status, DELBM_IO, "%s has %lld bytes, fewer than the %lld at the checkpoint: it was changed",
-                       csv->path, (long long)end, (long long)length);
+  if (!file_reaches(csv->descriptor, csv->path, length, status)) return false;
   csv->size = length;
   return ftruncate(csv->descriptor, length) == 0 || file_fail(status, "write", csv->path, errno);
 }

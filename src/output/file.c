@@ -50,6 +50,22 @@ bool file_make_directory(const char *path, struct status *status)
   return made && make_one_directory(path, status);
 }
 
+int64_t file_end(int descriptor, const char *path, struct status *status)
+{
+  const off_t end = lseek(descriptor, 0, SEEK_END);
+  if (end < 0) file_fail(status, "read", path, errno);
+  return end;
+}
+
+bool file_reaches(int descriptor, const char *path, int64_t length, struct status *status)
+{
+  const int64_t end = file_end(descriptor, path, status);
+  if (end < 0) return false;
+  return end >= length ||
+         status_fail(status, DELBM_IO, "%s has %lld bytes, fewer than the %lld at the checkpoint: it was changed", path,
+                     (long long)end, (long long)length);
+}
+
 bool file_remove(const char *path, struct status *status)
 {
   return unlink(path) == 0 || errno == ENOENT || file_fail(status, "remove", path, errno);

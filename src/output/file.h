@@ -4,6 +4,7 @@
 
 #include "base/status.h"
 
+#include <stdint.h>
 #include <stdio.h>
 
 /* A file written beside its final place and moved there once complete, so that no reader ever sees half of it. */
@@ -24,6 +25,12 @@ bool file_make_directory(const char *path, struct status *status);
 
 /* Forces what was written to a file to the disk. */
 bool file_sync(int descriptor, const char *path, struct status *status);
+
+/* Where a file ends, bytes; less than 0 on failure. */
+int64_t file_end(int descriptor, const char *path, struct status *status);
+
+/* The same of one that must not have become shorter since a checkpoint. */
+bool file_reaches(int descriptor, const char *path, int64_t length, struct status *status);
 
 /* Removes a file. One that does not exist is fine. */
 bool file_remove(const char *path, struct status *status);

@@ -46,7 +46,7 @@ static bool open_file(struct reversible *f, const char *path, const char *undo_p
 
 static bool open_undo(struct reversible *f, int flags, struct status *status)
 {
-  f->undo = open(f->undo_path, O_RDWR | O_CREAT | O_DSYNC | O_CLOEXEC | flags, 0666);
+  f->undo = open(f->undo_path, O_RDWR | O_DSYNC | O_CLOEXEC | flags, 0666);
   return f->undo >= 0 || file_fail(status, "open", f->undo_path, errno);
 }
 
@@ -73,8 +73,9 @@ bool reversible_create(struct reversible *f, const char *path, const char *undo_
 /* Puts back the pages of whole records from `start` on, the last first: of each page the oldest stays. */
 static bool put_back(const struct reversible *f, int64_t start, struct status *status)
 {
-  const int64_t size = sizeof(struct record), count = (lseek(f->undo, 0, SEEK_END) - start) / size;
-  for (int64_t k = count - 1; k >= 0; k--) {
+  const int64_t size = sizeof(struct record), end = file_end(f->undo, f->undo_path, status);
+  if (end < 0) return false;
+  for (int64_t k = (end - start) / size - 1; k >= 0; k--) {
     struct record record;
     int error = read_at(f->undo, &record, sizeof record, start + k * size);
     if (error) return file_fail(status, "read", f->undo_path, error);
@@ -95,10 +96,9 @@ static bool note_mark(struct reversible *f, const struct reversible_mark *mark, 
 
 static bool take_back(struct reversible *f, const struct reversible_mark *mark, struct status *status)
 {
-  const int64_t end = lseek(f->descriptor, 0, SEEK_END);
-  if (end < mark->file)
-    return status_fail(status, DELBM_IO, "%s has %lld bytes, fewer than the %lld at the checkpoint: it was changed",
-                       f->path, (long long)end, (long long)mark->file);
+  if (!file_reaches(f->descriptor, f->path, mark->file, status) ||
+      !file_reaches(f->undo, f->undo_path, mark->undo, status))
+    return false;
   if (!put_back(f, mark->undo, status)) return false;
   const int error = reversible_set_length(f, mark->file);
   if (error) return file_fail(status, "write", f->path, error);
@@ -165,7 +165,7 @@ int reversible_set_length(struct reversible *f, int64_t length)
 
 bool reversible_set_mark(struct reversible *f, struct reversible_mark *mark, struct status *status)
 {
-  if (f->undo < 0 && !open_undo(f, O_TRUNC, status)) return false;
+  if (f->undo < 0 && !open_undo(f, O_CREAT | O_TRUNC, status)) return false;
   if (!file_sync(f->descriptor, f->path, status)) return false;
   *mark = (struct reversible_mark){f->length, f->undo_length};
   return note_mark(f, mark, status);
