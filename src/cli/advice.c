@@ -12,7 +12,7 @@ static void advise_rates(const struct scene *scene)
   if (scene->fluid.collision == COLLISION_MRT && rates->q < 0.25 && fabs(rates->e - rates->nu) > 0.1)
     printf(
         "  note: s_q %.3g beside s_e %.3g diverges first of all choices at small viscosity; collision: adaptive is as "
-        "accurate in slow flow and goes as far as any (bench/README.md, stability)\n",
+        "accurate in slow flow and goes farther (bench/README.md, stability)\n",
         rates->q, rates->e);
 }
 
@@ -51,7 +51,7 @@ static void advise_owen(const struct scene *scene)
     free_discs += disc->motion == DISC_FREE;
     if (disc->motion == DISC_FREE || disc->spin == 0) continue;
     printf("  note: with form: owen the fluid inside disc %zu, which is made to spin, gains until the run diverges (R "
-           "= 10, spin 0.004: in 28,700 steps); form: midpoint does not (bench/README.md, stability)\n",
+           "= 10, spin 0.004: in 30,750 steps); form: midpoint does not (bench/README.md, stability)\n",
            i);
     return;
   }
