@@ -326,6 +326,9 @@ Test(program, info_warns_of_what_the_maps_found_to_fail)
       {"--set coupling.form=unified --set fluid.viscosity=0.05", "too little drag"},
       {"--set contact.substeps=1 --set contact.stiffness=1000", "1 sub-steps are fewer than"},
       {"--set 'particles.gravity=[0, -0.02]'", "of the fluid's pressure"},
+      {"--set domain.left=periodic --set domain.right=periodic --set domain.bottom=periodic --set domain.top=periodic "
+       "--set run.steps=3000",
+       "nothing holds the box"},
   };
   shell_write("crowd.yaml", crowd);
   cr_expect_eq(shell("$DELBM info crowd.yaml >out && ! grep 'bench/README' out >&2"), 0);

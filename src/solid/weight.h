@@ -11,8 +11,8 @@
  * of a disc that spins in its place until they grow by themselves, by all that shakes a pile of discs until, some ten
  * thousand steps later, fluid inside moves faster than sound. So a disc that moves is not wholly solid inside, and the
  * less so the faster its rim. A fixed one that does not spin is: its forces in slow flow then do not depend on
- * viscosity. And where a disc meets another or a wall, fluid caught between them could never leave, and would carry for ever what
- * weighs on it in place of the contact: the cells that both cover, or next to the wall, give. */
+ * viscosity. And where a disc meets another or a wall, fluid caught between them could never leave, and would carry for
+ * ever what weighs on it in place of the contact: the cells that both cover, or next to the wall, give. */
 #ifndef DELBM_SOLID_WEIGHT_H
 #define DELBM_SOLID_WEIGHT_H
 
