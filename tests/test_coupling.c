@@ -354,6 +354,23 @@ Test(stability, light_discs_packed_in_a_closed_box_rise)
   scene_clear(&scene);
 }
 
+/* What is given back to light discs late must not feed their oscillations: once, these moved at Mach 0.1 and more. */
+Test(stability, a_crowd_of_small_light_discs_at_small_viscosity_rises_quietly)
+{
+  struct scene scene = scene_box(80, 72, 0.005, SIDES_CLOSED);
+  scene.fluid.zero_flux = true;
+  scene.particles.gravity[1] = -2e-5;
+  for (int k = 0; k < 72; k++)
+    scene_add_disc(&scene, 3, 0.1, 5 + 8.7 * (k % 9) + 0.3 * (k / 9 % 3), 4.5 + 8.8 * (k / 9));
+  struct simulation *simulation = start(&scene);
+  advance(simulation, 6000);
+  struct simulation_report report;
+  simulation_report(simulation, &report);
+  cr_expect_lt(report.max_mach, 0.04, "Mach %g", report.max_mach);
+  simulation_destroy(simulation);
+  scene_clear(&scene);
+}
+
 /* Undamped inside, it moved against them by 0.03. */
 Test(stability, fluid_inside_the_discs_of_a_pile_moves_with_them)
 {

@@ -29,15 +29,18 @@ struct held exchange_held(const struct exchange *e, const struct discs *d, size_
   if (!e->memory || !is_light(d, i)) return (struct held){0};
   const double inertia = d->mass[i] - d->fluid_mass[i] + e->gathered[i].m0 / 2;
   const double angular = d->inertia[i] - d->fluid_inertia[i] + e->gathered[i].m2 / 2;
-  return (struct held){.mass = fmax(0, least_inertia * d->fluid_mass[i] - inertia),
+  const double mass = fmax(0, least_inertia * d->fluid_mass[i] - inertia);
+  const double depth = mass / d->fluid_mass[i] * d->radius[i];
+  return (struct held){.mass = mass,
                        .inertia = fmax(0, least_inertia * d->fluid_inertia[i] - angular),
-                       .time = 4 * sqrt(3) * d->radius[i]};
+                       .time = fmax(4 * sqrt(3) * d->radius[i], depth * depth / e->viscosity)};
 }
 
 bool exchange_create(struct exchange *e, const struct scene *scene, const struct discs *discs, struct status *status)
 {
   const char *what = "the exchange";
   *e = (struct exchange){.solve = scene->coupling.solve,
+                         .viscosity = scene->fluid.viscosity,
                          .gravity = {scene->particles.gravity[0], scene->particles.gravity[1]}};
   if ((e->gathered = memory_allocate(discs->count, sizeof *e->gathered, what, status)) &&
       (e->response = memory_allocate(discs->count, sizeof *e->response, what, status)) &&

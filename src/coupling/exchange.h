@@ -26,7 +26,10 @@
  * over a few passages of sound T:
  *   A = ... + c,  R = ... + p/T,  p' = (1 - 1/T) p + c dV.
  * A steady acceleration is what it was, since then p = T c dV; conserved is (m - m_f) V + p, also where c changes as
- * the disc moves over the cells. Rotation likewise.
+ * the disc moves over the cells. Rotation likewise. But what is given back late feeds oscillations: at a frequency w a disc
+ * gains c w^2 T/(1 + w^2 T^2) V^2, where its boundary layer takes 4 pi R sqrt(nu w/2) V^2, and where the first is more,
+ * as of small discs at small viscosity, a crowd sings until the run diverges. With T at least (c R/m_f)^2/nu, the time in
+ * which momentum diffuses over the part c/m_f of R, it is a fifth of the second at most.
  *
  * explicit-averaged, for comparison: A = diag(m, m, I), R = weight + mean of the exchange at V over this step and the
  * last; the sweep sees V.
@@ -55,6 +58,7 @@ struct response {
 
 struct exchange {
   enum coupling_solve solve;
+  double viscosity;
   double gravity[2];
   struct gathered *gathered;
   struct response *response;
