@@ -98,18 +98,32 @@ static void advise_weight(const struct scene *scene, const double weight[2])
   }
 }
 
-/* Where there is neither wall nor a disc that is held, what is not balanced accelerates all. */
+static bool has_held_discs(const struct scene *scene)
+{
+  bool held = false;
+  for (size_t i = 0; i < scene->particles.count; i++) held |= scene->particles.discs[i].motion != DISC_FREE;
+  return held;
+}
+
+/* Along a periodic axis what gravity adds accelerates all there is, but for what walls along the axis, or discs that are
+ * held, take: the speed of a flow between plates is the most. */
 static void advise_fall(const struct scene *scene, const double weight[2])
 {
   const double cells = (double)scene->domain.size[0] * scene->domain.size[1], *force = scene->fluid.force;
-  if (!scene_is_periodic(scene, 0) || !scene_is_periodic(scene, 1)) return;
-  for (size_t i = 0; i < scene->particles.count; i++)
-    if (scene->particles.discs[i].motion != DISC_FREE) return;
-  const double fall = hypot(weight[0] / cells + force[0], weight[1] / cells + force[1]) * (double)scene->run.steps;
-  if (fall > 0.05)
-    printf("  note: nothing holds the box against the weight of its discs: within the run all of it would gain %.2g "
-           "cells/step; fluid.force: [%.9g, %.9g] holds it\n",
-           fall, 0 - weight[0] / cells, 0 - weight[1] / cells);
+  double fall[2] = {0, 0};
+  for (int axis = 0; axis < 2; axis++) {
+    if (!scene_is_periodic(scene, axis) || weight[axis] == 0) continue;
+    const double pull = fabs(weight[axis] / cells + force[axis]), width = scene->domain.size[!axis];
+    fall[axis] = pull * (double)scene->run.steps;
+    if (!scene_is_periodic(scene, !axis))
+      fall[axis] = fmin(fall[axis], pull * width * width / (8 * scene->fluid.viscosity));
+  }
+  const double most = fmax(fall[0], fall[1]);
+  if (most > 0.05 && !has_held_discs(scene))
+    printf(
+        "  note: nothing holds the box along its periodic sides against the weight of its discs: within the run all of "
+        "it may gain %.2g cells/step; fluid.force: [%.9g, %.9g] holds it\n",
+        most, fall[0] > 0 ? 0 - weight[0] / cells : force[0], fall[1] > 0 ? 0 - weight[1] / cells : force[1]);
 }
 
 void print_advice(const struct scene *scene)
