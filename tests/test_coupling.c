@@ -455,6 +455,21 @@ Test(stability, explicit_coupling_of_a_light_disc_diverges_and_says_so_soon)
   scene_clear(&scene);
 }
 
+Test(stability, discs_that_close_an_outlet_are_named_as_what_makes_the_pressure_rise)
+{
+  struct scene scene = scene_box(60, 24, 0.05, SIDES_CLOSED);
+  struct simulation *simulation;
+  struct status status;
+  scene.domain.side[SIDE_LEFT] = (struct side){SIDE_INLET, {0.05, 0}};
+  scene.domain.side[SIDE_RIGHT].type = SIDE_OUTLET;
+  for (int k = 0; k < 3; k++) scene_add_disc(&scene, 4.1, 1, 50, 4 + 8 * k)->motion = DISC_FIXED;
+  cr_assert(simulation_create(&simulation, &scene, &status), "%s", status.message);
+  cr_assert_not(simulation_advance(simulation, 100000, &status));
+  cr_expect(strstr(status.message, "more enters than leaves: discs may close an outlet"), "%s", status.message);
+  simulation_destroy(simulation);
+  scene_clear(&scene);
+}
+
 Test(stability, fluid_of_negative_density_inside_a_disc_is_called_that)
 {
   struct scene scene = scene_box(60, 100, 0.05, SIDES_CLOSED);

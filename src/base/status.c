@@ -2,6 +2,7 @@
 
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
 
 bool status_fail(struct status *status, enum delbm_code code, const char *format, ...)
 {
@@ -12,4 +13,13 @@ bool status_fail(struct status *status, enum delbm_code code, const char *format
   vsnprintf(status->message, sizeof status->message, format, arguments);
   va_end(arguments);
   return false;
+}
+
+void status_add(struct status *status, const char *format, ...)
+{
+  const size_t length = strlen(status->message);
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(status->message + length, sizeof status->message - length, format, arguments);
+  va_end(arguments);
 }

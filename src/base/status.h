@@ -20,4 +20,7 @@ struct status {
 bool status_fail(struct status *status, enum delbm_code code, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
+/* Adds words to the message of a failure. */
+void status_add(struct status *status, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
 #endif

@@ -275,6 +275,18 @@ bool simulation_check(struct simulation *s, struct status *status)
   return false;
 }
 
+/* Where more fluid enters a box than leaves it, its pressure rises until something gives way: then this is the cause. */
+static void say_congestion(struct simulation *s, struct status *status)
+{
+  const struct side *side = s->scene->domain.side;
+  const double excess = diagnostics_totals(&s->flow.populations, side).excess_mass / (double)scene_cells(s->scene);
+  bool inlet = false;
+  for (enum side_name name = 0; name < SIDE_COUNT; name++) inlet |= side[name].type == SIDE_INLET;
+  if (inlet && excess > 0.1)
+    status_add(status, "; the box holds %.0f %% more fluid than at rest, as more enters than leaves%s", 100 * excess,
+               s->plan.exchange ? ": discs may close an outlet" : "");
+}
+
 bool simulation_advance(struct simulation *s, int64_t steps, struct status *status)
 {
   if (s->threads != threads_for(scene_cells(s->scene))) {
@@ -288,6 +300,7 @@ bool simulation_advance(struct simulation *s, int64_t steps, struct status *stat
     run_steps(s, end - s->step < until_look ? end - s->step : until_look);
     if (s->team.failed || (s->step % look == 0 && !simulation_check(s, status))) {
       *status = s->team.first;
+      if (!status->out_of_memory) say_congestion(s, status);
       return false;
     }
   }
