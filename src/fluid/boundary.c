@@ -49,6 +49,14 @@ static void outlet_link(struct populations *p, bool periodic_x, int i, int gx, i
   populations_set(p, to, populations_get(p, from) - boundary_outlet_hold(nx, ny) * d2q9_weight[i] * excess);
 }
 
+/* Which sides a pass is for. */
+enum { OUTLETS = 1, OTHERS = 2, ALL_SIDES = OUTLETS | OTHERS };
+
+static bool is_meant(const struct side *side, int which)
+{
+  return (which & (side->type == SIDE_OUTLET ? OUTLETS : OTHERS)) != 0;
+}
+
 /* The links of row y to the left (inward +1) or right (inward -1) side, with the positions of x = 0 in plane 0 of the
  * rows below, at and above y: of an outlet those from the ghost beside the row, of
  * other sides those to the cell at its end. */
@@ -96,35 +104,46 @@ static void end_links(struct populations *p, const struct side side[SIDE_COUNT],
   }
 }
 
-static void links(struct populations *p, const struct side side[SIDE_COUNT], int y, int x0, int x1, bool before)
+static void links(struct populations *p, const struct side side[SIDE_COUNT], int y, int x0, int x1, bool before,
+                  int which)
 {
   const size_t row[3] = {populations_slot(p, 0, 0, y - 1), populations_slot(p, 0, 0, y),
                          populations_slot(p, 0, 0, y + 1)};
-  if (x0 == 0) side_links(p, side, y, row, +1, before);
-  if (x1 == p->nx) side_links(p, side, y, row, -1, before);
+  if (x0 == 0 && is_meant(&side[SIDE_LEFT], which)) side_links(p, side, y, row, +1, before);
+  if (x1 == p->nx && is_meant(&side[SIDE_RIGHT], which)) side_links(p, side, y, row, -1, before);
   if (p->periodic_y) return;
-  if (y == 0) end_links(p, side, y, x0, x1, +1, before);
-  if (y == p->ny - 1) end_links(p, side, y, x0, x1, -1, before);
+  if (y == 0 && is_meant(&side[SIDE_BOTTOM], which)) end_links(p, side, y, x0, x1, +1, before);
+  if (y == p->ny - 1 && is_meant(&side[SIDE_TOP], which)) end_links(p, side, y, x0, x1, -1, before);
 }
 
 void boundary_before(struct populations *p, const struct side side[SIDE_COUNT], int y, int x0, int x1)
 {
-  links(p, side, y, x0, x1, true);
+  links(p, side, y, x0, x1, true, ALL_SIDES);
 }
 
 void boundary_after(struct populations *p, const struct side side[SIDE_COUNT], int y, int x0, int x1)
 {
-  links(p, side, y, x0, x1, false);
+  links(p, side, y, x0, x1, false, ALL_SIDES);
 }
 
 void boundary_before_row(struct populations *p, const struct side side[SIDE_COUNT], int y)
 {
-  links(p, side, y, 0, p->nx, true);
+  links(p, side, y, 0, p->nx, true, ALL_SIDES);
+}
+
+void boundary_outlets_before_row(struct populations *p, const struct side side[SIDE_COUNT], int y)
+{
+  links(p, side, y, 0, p->nx, true, OUTLETS);
+}
+
+void boundary_others_before_row(struct populations *p, const struct side side[SIDE_COUNT], int y)
+{
+  links(p, side, y, 0, p->nx, true, OTHERS);
 }
 
 void boundary_after_row(struct populations *p, const struct side side[SIDE_COUNT], int y)
 {
-  links(p, side, y, 0, p->nx, false);
+  links(p, side, y, 0, p->nx, false, ALL_SIDES);
 }
 
 bool boundary_fill_first(const struct side side[SIDE_COUNT])

@@ -12,8 +12,8 @@
  *                drift, and is weak enough to let sound out.
  *
  * Each row has passes of its own that touch only slots of that row's cells: rows may run in any order and on any
- * thread. The one exception is an outlet, whose ghosts are made from slots of other rows' cells: there all rows must be
- * filled before any is swept (boundary_fill_first). At a corner a wall wins over an inlet, that over an outlet, that
+ * thread. The one exception is an outlet, whose ghosts are read by the cells of the rows next to theirs, too: there all rows
+ * must be filled before any is swept (boundary_fill_first), and a row's neighbours before it is read. At a corner a wall wins over an inlet, that over an outlet, that
  * over a periodic side; y wins over x among equals. */
 #ifndef DELBM_FLUID_BOUNDARY_H
 #define DELBM_FLUID_BOUNDARY_H
@@ -30,8 +30,13 @@ static inline double boundary_outlet_hold(int nx, int ny)
   return longest > 5 ? 0.5 / longest : 0.1;
 }
 
-/* Fills the ghosts that row y reads in a step of parity 1. May be repeated before that step. */
+/* Fills the ghosts that row y reads in a step of parity 1, but for those of outlets: of these the ones beside the row's own
+ * cells, which the rows next to it read too. May be repeated before that step. */
 void boundary_before_row(struct populations *populations, const struct side side[SIDE_COUNT], int y);
+
+/* The two parts of that: what outlets fill, from what the row's own cells have left in the step before, and the rest. */
+void boundary_outlets_before_row(struct populations *populations, const struct side side[SIDE_COUNT], int y);
+void boundary_others_before_row(struct populations *populations, const struct side side[SIDE_COUNT], int y);
 
 /* The same for cells x0 .. x1 - 1 of row y alone, where no side is an outlet. */
 void boundary_before(struct populations *populations, const struct side side[SIDE_COUNT], int y, int x0, int x1);

@@ -164,12 +164,13 @@ static void cancel_flux(struct flow *f)
   }
 }
 
-/* Takes the moments of row y, about to be collided in the state `p`, for the discs that cover it. */
+/* Takes the moments of row y, about to be collided in the state `p`, for the discs that cover it. What outlets send into the
+ * row has been put into the ghosts, also of the rows next to it. */
 static void take_sums(const struct flow *f, struct populations *p, struct occupation *o, int y)
 {
   const struct band *band = occupation_band(o, y);
   const size_t first = band->row_start[y % BAND_ROWS], end = band->row_end[y % BAND_ROWS];
-  if (p->parity) boundary_before_row(p, f->scene->domain.side, y);
+  if (p->parity) boundary_others_before_row(p, f->scene->domain.side, y);
   if (first == end) return;
   void *a[Q];
   populations_cells(p, 0, y, a);
@@ -178,6 +179,10 @@ static void take_sums(const struct flow *f, struct populations *p, struct occupa
 
 void stage_first_sums(struct flow *f, struct occupation *o)
 {
+  const struct side *side = f->scene->domain.side;
+#pragma omp for schedule(static)
+  for (int y = 0; y < f->populations.ny; y++)
+    if (f->populations.parity) boundary_outlets_before_row(&f->populations, side, y);
 #pragma omp for schedule(static)
   for (int y = 0; y < f->populations.ny; y++) take_sums(f, &f->populations, o, y);
 #pragma omp single
@@ -203,6 +208,7 @@ void stage_sweep(struct flow *f, const struct rows *rows, bool ghosts_filled, co
     if (p->parity && !ghosts_filled) boundary_before_row(p, side, y);
     sweep_row_at(f, y, discs);
     if (p->parity) boundary_after_row(p, side, y);
+    if (discs->next && after.parity) boundary_outlets_before_row(&after, side, y);
     if (discs->next && k > first + 1) take_sums(f, &after, discs->next, row_in_box(p, k - 1));
   }
 #pragma omp barrier
