@@ -199,40 +199,85 @@ static bool map_driven(struct edge *edge, const struct edge_operator *choice, st
   return true;
 }
 
-/* A disc of R = 10 that is held and spins: nothing may move faster than its rim. */
-static bool map_spin(struct edge *edge, struct status *status)
+/* What drives fluid: nothing may move much faster than that. `mach`: of it, for a value of 1. */
+struct driver {
+  struct map map;
+  double mach;
+  int64_t steps;
+  void (*scene)(struct scene *scene, double value);
+};
+
+/* Of each form and value. */
+static bool map_driver(struct edge *edge, struct driver *driver, const double *values, struct status *status)
 {
-  static const double spins[] = {0.001, 0.002, 0.004, 0.008, 0.015, 0.03};
-  struct map map = {.name = "fixed disc that spins",
-                    .value = "fastest fluid over the speed of the rim, less 1",
-                    .corner = "form/spin",
-                    .threshold = 0.1};
-  map_set_columns(&map, spins, sizeof spins / sizeof spins[0]);
-  map_begin(&map, edge->report);
+  struct map *map = &driver->map;
+  map_begin(map, edge->report);
   for (int form = 0; form < FORM_COUNT; form++) {
     struct place row[MAP_COLUMNS];
-    for (int c = 0; c < map.columns; c++) {
-      struct scene scene = scene_box(60, 60, 0.05, SIDES_PERIODIC);
-      struct disc_spec *disc = scene_add_disc(&scene, 10, 1, 30, 30);
-      struct edge_run run = {.steps = edge->report->quick ? 1000 : 100000, .every = 1000, .watch = go_on};
-      disc->motion = DISC_FIXED;
-      disc->spin = spins[c];
+    for (int c = 0; c < map->columns; c++) {
+      struct scene scene;
+      struct edge_run run = {.steps = edge->report->quick ? 1000 : driver->steps, .every = 1000, .watch = go_on};
+      driver->scene(&scene, values[c]);
       scene.coupling.form = (enum coupling_form)form;
       const bool ok = edge_run(edge, &scene, &run, status);
       scene_clear(&scene);
       if (!ok) return false;
-      const double excess = run.last.max_mach / (sqrt(3) * 10 * spins[c]) - 1;
-      row[c] = run.diverged ? map_diverged(run.end) : map_judge(&map, excess, run.end);
+      const double excess = run.last.max_mach / (driver->mach * values[c]) - 1;
+      row[c] = run.diverged ? map_diverged(run.end) : map_judge(map, excess, run.end);
     }
-    map_row(&map, edge->report, forms[form], row, form == 0);
+    map_row(map, edge->report, forms[form], row, form == 0);
   }
   map_end(edge->report);
   return true;
+}
+
+static void spinning_disc(struct scene *scene, double spin)
+{
+  *scene = scene_box(60, 60, 0.05, SIDES_PERIODIC);
+  struct disc_spec *disc = scene_add_disc(scene, 10, 1, 30, 30);
+  disc->motion = DISC_FIXED;
+  disc->spin = spin;
+}
+
+static bool map_spin(struct edge *edge, struct status *status)
+{
+  static const double spins[] = {0.001, 0.002, 0.004, 0.008, 0.015, 0.03};
+  struct driver driver = {.map = {.name = "fixed disc that spins",
+                                  .value = "fastest fluid over the speed of the rim, less 1",
+                                  .corner = "form/spin",
+                                  .threshold = 0.1},
+                          .mach = 10 * sqrt(3),
+                          .steps = 100000,
+                          .scene = spinning_disc};
+  map_set_columns(&driver.map, spins, sizeof spins / sizeof spins[0]);
+  return map_driver(edge, &driver, spins, status);
+}
+
+/* A disc that a lid slides over, half a cell deep. */
+static void disc_under_a_lid(struct scene *scene, double mach)
+{
+  *scene = scene_box(90, 60, 0.01, SIDES_CLOSED);
+  scene->domain.side[SIDE_TOP].velocity[0] = mach / sqrt(3);
+  scene_add_disc(scene, 5, 1, 40.3, 55.5)->motion = DISC_FIXED;
+}
+
+static bool map_lid(struct edge *edge, struct status *status)
+{
+  static const double machs[] = {0.02, 0.05, 0.1, 0.15, 0.2, 0.3};
+  struct driver driver = {.map = {.name = "fixed disc under a lid",
+                                  .value = "fastest fluid over the speed of the lid, less 1",
+                                  .corner = "form/Mach",
+                                  .threshold = 0.5},
+                          .mach = 1,
+                          .steps = 20000,
+                          .scene = disc_under_a_lid};
+  map_set_columns(&driver.map, machs, sizeof machs / sizeof machs[0]);
+  return map_driver(edge, &driver, machs, status);
 }
 
 bool edge_discs(struct edge *edge, struct status *status)
 {
   for (int k = 0; k < EDGE_OPERATORS; k++)
     if (!map_driven(edge, &edge_operators[k], status)) return false;
-  return map_density(edge, status) && map_radius(edge, status) && map_spin(edge, status);
+  return map_density(edge, status) && map_radius(edge, status) && map_spin(edge, status) && map_lid(edge, status);
 }

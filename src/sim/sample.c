@@ -5,7 +5,7 @@
 #include "fluid/boundary.h"
 #include "fluid/vorticity.h"
 #include "sim/diagnostics.h"
-#include "solid/owners.h"
+#include "solid/occupation.h"
 
 #include <math.h>
 #include <omp.h>
@@ -32,10 +32,10 @@ struct sampling {
   bool periodic[2];
 };
 
-/* Buffers of one thread, of nx each: density and velocity of a row, ux of the rows beside it, and what covers it. */
+/* Buffers of one thread, of nx each: density and velocity of a row, ux of the rows beside it, what covers it, how much
+ * that gives, and how many discs it is. */
 struct rows {
-  double *rho, *ux, *uy, *below, *above, *covered;
-  struct owners *owners;
+  double *rho, *ux, *uy, *below, *above, *covered, *give, *owners;
 };
 
 /* The shares of a cell add up to its weight B: from that, backwards to eps. */
@@ -43,20 +43,20 @@ static void cover_row(const struct occupation *o, int y, const struct rows *rows
 {
   size_t count = 0;
   const struct run *runs = o ? occupation_row(o, y, &count) : NULL;
-  double *covered = rows->covered;
-  struct owners *owners = rows->owners;
-  for (int x = 0; x < nx; x++) {
-    covered[x] = 0;
-    owners[x] = owners_none();
-  }
+  double *covered = rows->covered, *give = rows->give, *owners = rows->owners;
+  for (int x = 0; x < nx; x++) covered[x] = give[x] = owners[x] = 0;
   for (const struct run *run = runs; run < runs + count; run++)
     for (int k = 0; k < run->n; k++) {
+      const int x = run->x + k;
       const double share = occupation_band(o, y)->share[run->share + (uint32_t)k];
-      covered[run->x + k] += share;
-      if (share > 0) owners_add(&owners[run->x + k], o, run, run->x + k, y);
+      covered[x] += share;
+      give[x] = fmax(give[x], o->give[run->disc]);
+      owners[x] += share > 0;
     }
-  for (int x = 0; count > 0 && x < nx; x++)
-    if (owners[x].count > 0) covered[x] = fmin(1, weight_fraction(owners_law(&owners[x], o), covered[x]));
+  for (int x = 0; count > 0 && x < nx; x++) {
+    const bool between = owners[x] > 1 || occupation_at_side(o, x, y);
+    covered[x] = fmin(1, weight_fraction(occupation_law(o, give[x], between), covered[x]));
+  }
 }
 
 static void sample_row(const struct sampling *s, const struct rows *rows, int row)
@@ -88,29 +88,19 @@ bool sample_take(struct populations *p, const struct side side[SIDE_COUNT], cons
                  const struct occupation *occupation, const struct sample_grid *grid, const struct sample *sample,
                  struct status *status)
 {
-  enum { BUFFERS = 6 };
+  enum { BUFFERS = 8 };
   const struct sampling sampling = {
       p,    force,  occupation,
       grid, sample, {side[SIDE_LEFT].type == SIDE_PERIODIC, side[SIDE_BOTTOM].type == SIDE_PERIODIC}};
   const int threads = threads_for((int64_t)p->nx * p->ny);
   const size_t nx = (size_t)p->nx;
   double *buffers = memory_allocate((size_t)threads * BUFFERS, nx * sizeof *buffers, "rows of fields", status);
-  struct owners *owners = memory_allocate((size_t)threads, nx * sizeof *owners, "rows of fields", status);
-  if (!buffers || !owners) {
-    free(buffers);
-    free(owners);
-    return false;
-  }
+  if (!buffers) return false;
 #pragma omp parallel num_threads(threads)
   {
     double *own = buffers + (size_t)omp_get_thread_num() * BUFFERS * nx;
-    const struct rows rows = {own,
-                              own + nx,
-                              own + 2 * nx,
-                              own + 3 * nx,
-                              own + 4 * nx,
-                              own + 5 * nx,
-                              owners + (size_t)omp_get_thread_num() * nx};
+    const struct rows rows = {own,          own + nx,     own + 2 * nx, own + 3 * nx,
+                              own + 4 * nx, own + 5 * nx, own + 6 * nx, own + 7 * nx};
 #pragma omp for schedule(static)
     for (int y = 0; y < p->ny; y++)
       if (p->parity) boundary_before_row(p, side, y);
@@ -118,6 +108,5 @@ bool sample_take(struct populations *p, const struct side side[SIDE_COUNT], cons
     for (int row = 0; row < grid->count[1]; row++) sample_row(&sampling, &rows, row);
   }
   free(buffers);
-  free(owners);
   return true;
 }

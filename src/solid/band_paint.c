@@ -1,7 +1,6 @@
 #include "solid/band.h"
 
 #include "base/memory.h"
-#include "solid/owners.h"
 
 #include <math.h>
 
@@ -194,23 +193,16 @@ static bool make_room(struct occupation *o, int index, const struct discs *discs
          memory_grow(&band->sums, &band->sums_capacity, total, sizeof *band->sums, "a band's sums", status);
 }
 
-/* The shares of those cells of a run that lie next to a side. */
-static void lay_out_at_sides(const struct occupation *o, const struct run *run, int y, const double *eps, double *share)
-{
-  for (int k = 0; k < run->n; k++) {
-    struct owners owners = owners_none();
-    owners_add(&owners, o, run, run->x + k, y);
-    if (owners.side_slip >= 0) share[k] = weight_of(owners_law(&owners, o), eps[k]);
-  }
-}
-
 /* The shares of a run of row y, whose cells are taken to have one owner. What a kernel writes past the end of a run is
  * overwritten by the next. */
 static void lay_out_run(const struct occupation *o, const struct run *run, int y, const double *eps, double *share)
 {
-  const bool at_end = !o->periodic[0] && (run->x == 0 || run->x + run->n == o->size[0]);
-  o->area->weights(eps, run->n, weight_law(o->form, o->viscosity, o->give[run->disc]), share);
-  if (at_end || occupation_row_at_side(o, y)) lay_out_at_sides(o, run, y, eps, share);
+  const double give = o->give[run->disc];
+  const int last = run->n - 1;
+  o->area->weights(eps, run->n, occupation_law(o, give, occupation_row_at_side(o, y)), share);
+  if (o->periodic[0] || (run->x > 0 && run->x + last < o->size[0] - 1)) return;
+  if (occupation_at_side(o, run->x, y)) share[0] = weight_of(occupation_law(o, give, true), eps[0]);
+  if (occupation_at_side(o, run->x + last, y)) share[last] = weight_of(occupation_law(o, give, true), eps[last]);
 }
 
 static bool lay_out_shares(struct occupation *o, int index, const struct band_draft *draft, size_t cells,

@@ -1,5 +1,4 @@
 #include "solid/band.h"
-#include "solid/owners.h"
 
 #include "base/memory.h"
 
@@ -28,20 +27,20 @@ static double fraction(const struct encounter *e, size_t r, int x)
 /* Shares a cell among its owners, if it has more than one: the first of the encounter, and some of those after it. */
 static void share_cell(struct occupation *o, struct band *band, const struct encounter *e, int x)
 {
-  struct owners owners = owners_none();
-  double total = 0;
-  size_t end = e->first;
+  double total = 0, give = 0;
+  size_t owners = 0, end = e->first;
   for (; end < e->count && e->candidates[end].reach_first <= x; end++) {
     if (!covers(&e->row[end], x)) continue;
     total += fraction(e, end, x);
-    if (fraction(e, end, x) > 0) owners_add(&owners, o, &e->row[end], x, e->y);
+    give = fmax(give, o->give[e->row[end].disc]);
+    owners += fraction(e, end, x) > 0;
   }
-  if (owners.count < 2) return;
-  const double weight = weight_of(owners_law(&owners, o), fmin(1, total)) / total;
+  if (owners < 2) return;
+  const double weight = weight_of(occupation_law(o, give, true), fmin(1, total)) / total;
   for (size_t r = e->first; r < end; r++)
     if (covers(&e->row[r], x)) band->share[e->row[r].share + (size_t)(x - e->row[r].x)] = fraction(e, r, x) * weight;
   band->shared_cells++;
-  band->shared_owners += (size_t)owners.count;
+  band->shared_owners += owners;
 }
 
 /* True if a run before the second, other than the first, covers the cell: it is then shared on their account. */

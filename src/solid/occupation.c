@@ -23,7 +23,7 @@ static double most_cells(double radius)
 double occupation_bytes(const struct scene *scene)
 {
   const size_t row = sizeof(struct run) + sizeof(struct moment_sums) + 2 * sizeof(size_t);
-  const size_t disc = 6 * sizeof(double) + 5 * sizeof(int32_t) + sizeof(size_t) + 2 * sizeof(uint32_t) + 1;
+  const size_t disc = 3 * sizeof(double) + 5 * sizeof(int32_t) + sizeof(size_t) + 2 * sizeof(uint32_t) + 1;
   double bytes = 0;
   for (size_t i = 0; i < scene->particles.count; i++) {
     const double radius = scene->particles.discs[i].radius;
@@ -38,9 +38,6 @@ static bool allocate(struct occupation *o, size_t rows, struct status *status)
   const size_t n = o->discs, bands = (size_t)o->band_count;
   return (o->x = memory_allocate(n, sizeof *o->x, what, status)) &&
          (o->y = memory_allocate(n, sizeof *o->y, what, status)) &&
-         (o->vx = memory_allocate(n, sizeof *o->vx, what, status)) &&
-         (o->vy = memory_allocate(n, sizeof *o->vy, what, status)) &&
-         (o->omega = memory_allocate(n, sizeof *o->omega, what, status)) &&
          (o->give = memory_allocate(n, sizeof *o->give, what, status)) &&
          (o->column = memory_allocate(n, sizeof *o->column, what, status)) &&
          (o->row = memory_allocate(n, sizeof *o->row, what, status)) &&
@@ -72,8 +69,6 @@ bool occupation_create(struct occupation *o, const struct scene *scene, const st
                                                                           : PAIRS_ONCE,
                            .discs = discs->count,
                            .band_count = (scene->domain.size[1] + BAND_ROWS - 1) / BAND_ROWS};
-  for (enum side_name side = 0; side < SIDE_COUNT; side++)
-    memcpy(o->side_velocity[side], scene->domain.side[side].velocity, sizeof o->side_velocity[side]);
   size_t rows = 0;
   for (size_t i = 0; i < discs->count; i++) rows += most_lines(discs->radius[i]);
   if (!allocate(o, rows, status)) {
@@ -101,29 +96,25 @@ void occupation_destroy(struct occupation *o)
     free(o->drafts[t].candidates);
     free(o->drafts[t].eps);
   }
-  void *const arrays[] = {o->x,     o->y,          o->vx,         o->vy,      o->omega,    o->give,      o->column,
-                          o->row,   o->rows,       o->moved,      o->was_row, o->was_rows, o->first_row, o->place,
-                          o->order, o->band_start, o->band_discs, o->stale,   o->bands,    o->batches,   o->drafts};
+  void *const arrays[] = {o->x,          o->y,          o->give,     o->column,    o->row,     o->rows,
+                          o->moved,      o->was_row,    o->was_rows, o->first_row, o->place,   o->order,
+                          o->band_start, o->band_discs, o->stale,    o->bands,     o->batches, o->drafts};
   for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; k++) free(arrays[k]);
   *o = (struct occupation){0};
 }
 
-/* Notes where disc i is now, and how it moves. Rows that lie in no band keep no_run. */
+/* Notes where disc i is now, and how it spins. Rows that lie in no band keep no_run. */
 static void settle(struct occupation *o, const struct discs *discs, size_t i)
 {
   const double radius = discs->radius[i], x = discs->x[i], y = discs->y[i];
-  const double vx = discs->vx[i], vy = discs->vy[i], omega = discs->omega[i];
-  const bool here = o->painted && o->x[i] == x && o->y[i] == y;
-  o->moved[i] = !(here && o->vx[i] == vx && o->vy[i] == vy && o->omega[i] == omega);
+  const double give = weight_give(o->form, discs->motion[i], radius, discs->omega[i]);
+  o->moved[i] = !(o->painted && o->x[i] == x && o->y[i] == y && o->give[i] == give);
   if (!o->moved[i]) return;
   o->was_row[i] = o->row[i];
   o->was_rows[i] = o->rows[i];
   o->x[i] = x;
   o->y[i] = y;
-  o->vx[i] = vx;
-  o->vy[i] = vy;
-  o->omega[i] = omega;
-  o->give[i] = weight_give(o->form, discs->motion[i], radius, omega);
+  o->give[i] = give;
   o->column[i] = (int)floor(x - radius);
   o->row[i] = (int)floor(y - radius);
   o->rows[i] = (int)ceil(y + radius) - o->row[i];

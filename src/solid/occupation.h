@@ -71,7 +71,6 @@ struct occupation {
   bool periodic[2];
   enum coupling_form form;
   double viscosity;
-  double side_velocity[SIDE_COUNT][2];
   int reach;      /* cells by which runs are widened in the search for pairs, 0 or 1 */
   double minimum; /* A_m of (23) */
   enum pair_search search;
@@ -80,8 +79,7 @@ struct occupation {
 
   size_t discs;
   bool painted;                /* at least once */
-  double *x, *y;               /* centre of each disc when it was painted, */
-  double *vx, *vy, *omega;     /* its velocity and spin, */
+  double *x, *y;               /* centre of each disc when it was painted */
   double *give;                /* and its give (weight.h) */
   int32_t *column;             /* of its leftmost cell, before wrapping */
   int32_t *row, *rows;         /* its lowest cell, and how many rows it covers */
@@ -131,10 +129,22 @@ static inline const struct run *occupation_row(const struct occupation *o, int y
   return band->runs + start;
 }
 
-/* Whether row y lies next to a side that discs cannot leave through. */
+/* Whether row y, or cell (x, y), lies next to a side that discs cannot leave through. */
 static inline bool occupation_row_at_side(const struct occupation *o, int y)
 {
   return !o->periodic[1] && (y == 0 || y == o->size[1] - 1);
+}
+
+static inline bool occupation_at_side(const struct occupation *o, int x, int y)
+{
+  return (!o->periodic[0] && (x == 0 || x == o->size[0] - 1)) || occupation_row_at_side(o, y);
+}
+
+/* Of cells whose owners give by at most this; `between`: a disc and another, or a side. */
+static inline struct weight_law occupation_law(const struct occupation *o, double give, bool between)
+{
+  const double least = between ? weight_give_between(o->form) : 0;
+  return weight_law(o->form, o->viscosity, give > least ? give : least);
 }
 
 /* The sums of one piece of the disc's row k, and that row before wrapping; NULL where nothing of it lies in the box. */
