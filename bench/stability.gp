@@ -25,6 +25,7 @@ do for [operator in '"bgk" "trt 3/16" "mrt 1.4 1.2" "mrt s_nu 1.2" "mrt 1.4 magi
 }
 eval draw("density of a settling disc", "density")
 eval draw("fixed disc that spins", "spin")
+eval draw("fixed disc under a lid", "Mach number of the lid")
 eval draw("impact, damping 0.34, restitution", "sub-steps (rows: stiffness)")
 eval draw("impact by cells, damping 0.34, restitution", "sub-steps (rows: stiffness)")
 eval draw("fast impact, overlap", "Mach number of each (rows: density)")
