@@ -122,6 +122,8 @@ Test(state, of_fixed_discs_and_of_none_is_whole)
   expect_same_end("outlet", &scene, 200, 51);
   scene_add_disc(&scene, 6, 1.5, 50, 60);
   expect_same_end("outlet and a disc", &scene, 200, 51);
+  scene_add_disc(&scene, 6, 1.5, 134.3, 60)->motion = DISC_FIXED;
+  expect_same_end("a disc beside an outlet", &scene, 200, 51);
 }
 
 Test(state, that_has_diverged_is_not_saved)

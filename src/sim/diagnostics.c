@@ -22,18 +22,21 @@ static struct cell_moments moments_at(const struct populations *p, int x, int y)
   return m;
 }
 
-static void fill_ghosts(struct populations *p, const struct side side[SIDE_COUNT], int y)
+/* Of all rows before any is read: beside an outlet a row reads ghosts that are filled with its neighbours. */
+static void fill_ghosts(struct populations *p, const struct side side[SIDE_COUNT])
 {
-  if (p->parity) boundary_before_row(p, side, y);
+  if (p->parity == 0) return;
+#pragma omp parallel for schedule(static) num_threads(threads_for((int64_t)p->nx * p->ny))
+  for (int y = 0; y < p->ny; y++) boundary_before_row(p, side, y);
 }
 
 struct fluid_totals diagnostics_totals(struct populations *p, const struct side side[SIDE_COUNT])
 {
   struct fluid_totals totals = {0};
+  fill_ghosts(p, side);
 #pragma omp parallel for ordered schedule(static, 1) num_threads(threads_for((int64_t)p->nx * p->ny))
   for (int y = 0; y < p->ny; y++) {
     struct fluid_totals row = {0};
-    fill_ghosts(p, side, y);
     for (int x = 0; x < p->nx; x++) {
       const struct cell_moments m = moments_at(p, x, y);
       row.excess_mass += m.excess;
@@ -73,6 +76,7 @@ struct worst_cell diagnostics_worst(struct populations *p, scan_row *scan, const
 {
   double worst = -1;
   int row = 0;
+  fill_ghosts(p, side);
 #pragma omp parallel num_threads(threads_for((int64_t)p->nx * p->ny))
   {
     double own = -1;
@@ -80,7 +84,6 @@ struct worst_cell diagnostics_worst(struct populations *p, scan_row *scan, const
 #pragma omp for schedule(static) nowait
     for (int y = 0; y < p->ny; y++) {
       void *a[Q];
-      fill_ghosts(p, side, y);
       populations_cells(p, 0, y, a);
       const double speed2 = scan(a, p->nx);
       if (worse(speed2, own)) own = speed2, own_row = y;
@@ -106,10 +109,10 @@ void diagnostics_row(const struct populations *p, const struct fluid_force *forc
 void diagnostics_fields(struct populations *p, const struct side side[SIDE_COUNT], const struct fluid_force *force,
                         double *density, double *ux, double *uy)
 {
+  fill_ghosts(p, side);
 #pragma omp parallel for schedule(static) num_threads(threads_for((int64_t)p->nx * p->ny))
   for (int y = 0; y < p->ny; y++) {
     const size_t at = (size_t)y * (size_t)p->nx;
-    fill_ghosts(p, side, y);
     diagnostics_row(p, force, y, density ? density + at : NULL, ux ? ux + at : NULL, uy ? uy + at : NULL);
   }
 }
