@@ -319,6 +319,7 @@ Test(program, info_warns_of_what_the_maps_found_to_fail)
       {"--set fluid.collision=mrt --set fluid.viscosity=0.002 --set fluid.magic=0.1875",
        "diverges first of all choices"},
       {"--set coupling.solve=explicit-averaged --set particles.density=0.4", "explicit-averaged diverges"},
+      {"--set 'particles={density: 0.9, discs: [{radius: 1.2, position: [90, 90]}]}'", "so small and light"},
       {"--set coupling.form=owen --set 'particles={discs: [{radius: 9, position: [90, 90], fixed: true, spin: "
        "0.004}]}'",
        "is made to spin"},

@@ -30,6 +30,23 @@ static void advise_solve(const struct scene *scene)
   }
 }
 
+/* At small viscosity a disc of a few cells holds less fluid than its area, which is what its buoyancy and inertia are taken
+ * from: what is left of the inertia of a light one is negative. */
+static void advise_light(const struct scene *scene)
+{
+  const double viscosity = scene->fluid.viscosity;
+  if (scene->coupling.solve != SOLVE_IMPLICIT) return;
+  for (size_t i = 0; i < scene->particles.count; i++) {
+    const struct disc_spec *disc = &scene->particles.discs[i];
+    const bool small = disc->radius < 0.7 || (disc->radius < 1.8 && viscosity <= 0.1);
+    if (disc->motion != DISC_FREE || disc->density > 0.97 || !small) continue;
+    printf("  note: disc %zu (radius %g, density %g) is so small and light that, at viscosity %g, it may gain speed by "
+           "itself until the run diverges; a radius of 2 or more does not (bench/README.md, stability)\n",
+           i, disc->radius, disc->density, viscosity);
+    return;
+  }
+}
+
 /* Benchmark `drag`: errors of a square array grow with viscosity and with 1/R in the paper's form. */
 static void advise_form(const struct scene *scene)
 {
@@ -132,6 +149,7 @@ void print_advice(const struct scene *scene)
   advise_rates(scene);
   if (scene->particles.count == 0) return;
   advise_solve(scene);
+  advise_light(scene);
   advise_form(scene);
   advise_owen(scene);
   weigh(scene, weight);
