@@ -253,6 +253,24 @@ static void run_steps(struct simulation *s, int64_t steps)
     run_blocks(s, steps);
 }
 
+/* By which part a box that an inlet fills holds more fluid than at rest. */
+static double congestion(struct simulation *s)
+{
+  const struct side *side = s->scene->domain.side;
+  bool inlet = false;
+  for (enum side_name name = 0; name < SIDE_COUNT; name++) inlet |= side[name].type == SIDE_INLET;
+  return inlet ? diagnostics_totals(&s->flow.populations, side).excess_mass / (double)scene_cells(s->scene) : 0;
+}
+
+/* Where more fluid enters than leaves, its pressure rises until something gives way: then this is the cause. */
+static void say_congestion(struct simulation *s, struct status *status)
+{
+  const double excess = congestion(s);
+  if (excess > 0.1)
+    status_add(status, "; the box holds %.0f %% more fluid than at rest, as more enters than leaves%s", 100 * excess,
+               s->plan.exchange ? ": discs may close an outlet" : "");
+}
+
 bool simulation_check(struct simulation *s, struct status *status)
 {
   if (s->team.failed) {
@@ -260,31 +278,22 @@ bool simulation_check(struct simulation *s, struct status *status)
     return false;
   }
   const struct worst_cell worst = diagnostics_worst(&s->flow.populations, s->flow.kernel->scan, s->scene->domain.side);
-  const double speed = sqrt(worst.speed2), mach = speed * sqrt(3);
-  if (speed <= diagnostics_fastest) {
+  const double speed = sqrt(worst.speed2), mach = speed * sqrt(3), most_congestion = 0.5;
+  const long long step = (long long)s->step;
+  if (isnan(speed)) {
+    status_fail(status, DELBM_FAILED, "diverged by step %lld: cell (%d, %d) is no longer finite", step, worst.x,
+                worst.y);
+  } else if (speed > diagnostics_fastest) {
+    status_fail(status, DELBM_FAILED, "diverged by step %lld: the fluid at cell (%d, %d) moves at Mach %.3g, above 0.6",
+                step, worst.x, worst.y, mach);
+  } else if (congestion(s) > most_congestion) {
+    status_fail(status, DELBM_FAILED, "diverged by step %lld: the fluid is denser than the method can describe", step);
+  } else {
     s->max_mach = fmax(s->max_mach, mach);
     return true;
   }
-  if (isnan(speed))
-    status_fail(status, DELBM_FAILED, "diverged by step %lld: cell (%d, %d) is no longer finite", (long long)s->step,
-                worst.x, worst.y);
-  else
-    status_fail(status, DELBM_FAILED, "diverged by step %lld: the fluid at cell (%d, %d) moves at Mach %.3g, above 0.6",
-                (long long)s->step, worst.x, worst.y, mach);
   team_fail(&s->team, status);
   return false;
-}
-
-/* Where more fluid enters a box than leaves it, its pressure rises until something gives way: then this is the cause. */
-static void say_congestion(struct simulation *s, struct status *status)
-{
-  const struct side *side = s->scene->domain.side;
-  const double excess = diagnostics_totals(&s->flow.populations, side).excess_mass / (double)scene_cells(s->scene);
-  bool inlet = false;
-  for (enum side_name name = 0; name < SIDE_COUNT; name++) inlet |= side[name].type == SIDE_INLET;
-  if (inlet && excess > 0.1)
-    status_add(status, "; the box holds %.0f %% more fluid than at rest, as more enters than leaves%s", 100 * excess,
-               s->plan.exchange ? ": discs may close an outlet" : "");
 }
 
 bool simulation_advance(struct simulation *s, int64_t steps, struct status *status)
