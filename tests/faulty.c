@@ -1,7 +1,8 @@
 /* Failures on demand. This is linked into a program of its own, `delbm-faulty`, where it takes the place of functions of
  * the C library, for the program and for the libraries that it uses. DELBM_FAIL="memory 17" lets the 17th allocation
- * after the start of main fail, and so on for `thread`, `file` and the name of a function, "lseek 2"; "memory 17 on" also
- * all that follow. A call that is made to fail is named in the file DELBM_FAILED_AT. The delbm that is installed has nothing of this. */
+ * after the start of main fail, and so on for `thread`, `file` and the name of a function, "lseek 2"; "memory 17 on"
+ * also all that follow. A call that is made to fail is named in the file DELBM_FAILED_AT. The delbm that is installed
+ * has nothing of this. */
 #include <dirent.h>
 #include <dlfcn.h>
 #include <errno.h>

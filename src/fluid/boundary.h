@@ -12,9 +12,9 @@
  *                drift, and is weak enough to let sound out.
  *
  * Each row has passes of its own that touch only slots of that row's cells: rows may run in any order and on any
- * thread. The one exception is an outlet, whose ghosts are read by the cells of the rows next to theirs, too: there all rows
- * must be filled before any is swept (boundary_fill_first), and a row's neighbours before it is read. At a corner a wall wins over an inlet, that over an outlet, that
- * over a periodic side; y wins over x among equals. */
+ * thread. The one exception is an outlet, whose ghosts are read by the cells of the rows next to theirs, too: there all
+ * rows must be filled before any is swept (boundary_fill_first), and a row's neighbours before it is read. At a corner a
+ * wall wins over an inlet, that over an outlet, that over a periodic side; y wins over x among equals. */
 #ifndef DELBM_FLUID_BOUNDARY_H
 #define DELBM_FLUID_BOUNDARY_H
 

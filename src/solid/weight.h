@@ -34,8 +34,8 @@ static inline double weight_give(enum coupling_form form, enum disc_motion motio
 }
 
 /* That of cells between a disc and what it meets. With 0.05 fluid caught there left within some 10,000 steps (R = 10), and
- * surfaces that pass each other drove it at three times their speed; with this it is no faster than they (map "fixed disc
- * under a lid"). */
+ * surfaces that pass each other drove it at three times their speed; with this it is no faster than they in the map "fixed
+ * disc under a lid". */
 static inline double weight_give_between(enum coupling_form form)
 {
   return form == FORM_MIDPOINT ? 0.5 : 0;
