@@ -77,7 +77,7 @@ static struct energies measure(struct layer *l)
   const struct fluid_force none = flow_force(&l->flow);
   const double unit = 2 * M_PI / n, all = pow(n, 4);
   struct energies sum = {0};
-  diagnostics_fields(&l->flow.populations, l->flow.scene->domain.side, &none, NULL, l->ux, l->uy);
+  diagnostics_fields(&l->flow.populations, &none, NULL, l->ux, l->uy);
   for (int k = 0; k < 2; k++) fftw_execute(l->plan[k]);
   for (int j = 0; j < n; j++)
     for (int i = 0; i <= n / 2; i++) {
@@ -92,8 +92,7 @@ static struct energies measure(struct layer *l)
 
 static bool has_diverged(struct layer *l)
 {
-  const struct worst_cell worst =
-      diagnostics_worst(&l->flow.populations, l->flow.kernel->scan, l->flow.scene->domain.side);
+  const struct worst_cell worst = diagnostics_worst(&l->flow.populations, l->flow.kernel->scan);
   return !(sqrt(worst.speed2) <= diagnostics_fastest);
 }
 
@@ -105,7 +104,7 @@ static struct place follow_layer(struct layer *l, const struct map *map)
   struct energies before = start;
   double taken = 0, error = 0;
   for (int64_t step = 1; step <= steps; step++) {
-    stage_sweep(&l->flow, &(struct rows){0, l->size}, false, &(struct sweep_discs){0});
+    stage_sweep(&l->flow, &(struct rows){0, l->size}, &(struct sweep_discs){0});
     if (step % every != 0 && step < steps) continue;
     if (has_diverged(l)) return map_diverged(step);
     const struct energies now = measure(l);

@@ -20,7 +20,7 @@ static double time_bare(struct flow *flow, int steps, int depth)
 #pragma omp parallel
   for (int k = 0; k < steps; k += depth) {
     if (depth == 1)
-      stage_sweep(flow, &all, false, &(struct sweep_discs){0});
+      stage_sweep(flow, &all, &(struct sweep_discs){0});
     else
       stage_sweep_blocked(flow, &blocking, depth);
   }

@@ -91,7 +91,7 @@ static void take_steps(struct subject *subject, int steps)
   const int depth = subject->way == BLOCKED ? subject->blocking.depth : 1;
   const struct rows all = {0, subject->flow.populations.ny};
   for (int k = 0; k < steps; k += depth) {
-    if (subject->way == IN_PLACE) stage_sweep(&subject->flow, &all, false, &(struct sweep_discs){0});
+    if (subject->way == IN_PLACE) stage_sweep(&subject->flow, &all, &(struct sweep_discs){0});
     if (subject->way == TWO_ARRAYS) two_arrays_step(subject);
     if (subject->way == PLAIN) plain_pass(&subject->flow.populations);
     if (subject->way == BLOCKED) stage_sweep_blocked(&subject->flow, &subject->blocking, depth);

@@ -46,14 +46,13 @@ static void populations_after(const struct scene *scene, const struct blocking *
 #pragma omp parallel num_threads(threads)
     {
       if (blocking->depth == 0)
-        stage_sweep(&flow, &(struct rows){0, scene->domain.size[1]}, false, &(struct sweep_discs){0});
+        stage_sweep(&flow, &(struct rows){0, scene->domain.size[1]}, &(struct sweep_discs){0});
       else
         stage_sweep_blocked(&flow, blocking, block);
     }
     step += blocking->depth == 0 ? 1 : block;
   }
   const int nx = scene->domain.size[0], ny = scene->domain.size[1];
-  for (int y = 0; y < ny && flow.populations.parity; y++) boundary_before_row(&flow.populations, scene->domain.side, y);
   for (int k = 0; k < nx * ny; k++) populations_cell(&flow.populations, k % nx, k / nx, all + k * Q);
   flow_destroy(&flow);
 }

@@ -107,13 +107,11 @@ static void cover_row(const struct cover *cover, int y, enum precision precision
     }
 }
 
-static void fast_step(struct populations *p, const struct setting *s, const struct sweep_constants *c,
-                      const struct cover *cover, bool backwards, double momentum[2])
+static void fast_step(struct populations *p, struct boundary *boundary, const struct setting *s,
+                      const struct sweep_constants *c, const struct cover *cover, bool backwards, double momentum[2])
 {
   _Alignas(64) double b[3][NX + 8];
   void *buffers[3] = {b[0], b[1], b[2]};
-  if (p->parity)
-    for (int y = 0; y < NY; y++) boundary_before_row(p, s->side, y);
   for (int k = 0; k < NY; k++) {
     const int y = backwards ? NY - 1 - k : k;
     void *a[Q];
@@ -124,18 +122,16 @@ static void fast_step(struct populations *p, const struct setting *s, const stru
     sweep_row *kernel =
         s->form < 0 ? s->kernel->fluid[s->adaptive][s->force] : s->kernel->discs[s->form][s->adaptive][s->force];
     kernel(a, NX, c, s->form < 0 ? NULL : &row, sum);
-    if (p->parity) boundary_after_row(p, s->side, y);
+    boundary_after(boundary, p, y, 0, NX);
     momentum[0] += sum[0];
     momentum[1] += sum[1];
   }
   p->parity ^= 1;
 }
 
-static double largest_difference(struct populations *p, const struct reference *r, const struct setting *s)
+static double largest_difference(const struct populations *p, const struct reference *r)
 {
   double largest = 0;
-  if (p->parity)
-    for (int y = 0; y < NY; y++) boundary_before_row(p, s->side, y);
   for (int k = 0; k < CELLS; k++) {
     double g[Q];
     populations_cell(p, k % NX, k / NX, g);
@@ -161,13 +157,16 @@ static double run_setting(const struct setting *s, unsigned long seed)
   gsl_rng_set(random, seed);
   struct status status;
   struct populations p;
+  struct boundary boundary;
   struct reference r;
   static struct cover cover;
   const bool periodic_y = s->side[SIDE_BOTTOM].type == SIDE_PERIODIC;
   cr_assert(populations_create(&p, NX, NY, periodic_y, s->kernel->precision, &status));
+  cr_assert(boundary_create(&boundary, s->side, NX, NY, &status));
   cr_assert(reference_create(&r, NX, NY, &status));
   random_cover(&cover, random);
   random_state(&p, &r, random);
+  boundary_reset(&boundary, &p);
   struct sweep_constants c = {.rates = {.nu = 1.7, .e = 1.4, .q = 1.2}};
   /* the speeds of the random state are about this viscosity of 0.006, where the rate changes most */
   if (s->adaptive) c.rates = (struct rates){.nu = 1.93, .e = 1.4, .q = 0.6, .q_fast = 1.2};
@@ -180,15 +179,16 @@ static double run_setting(const struct setting *s, unsigned long seed)
   double largest = 0;
   for (int step = 0; step < STEPS; step++) {
     double momentum[2] = {0, 0}, expected[2] = {0, 0}, mass = 0;
-    fast_step(&p, s, &c, &cover, step % 2, momentum);
+    fast_step(&p, &boundary, s, &c, &cover, step % 2, momentum);
     add_half(r.f, expected, &mass);
     reference_step(&r, s->side, &c, &whole);
     add_half(r.collided, expected, &mass);
     for (int d = 0; d < 2; d++) expected[d] += (mass * c.force[d] + CELLS * c.uniform[d]) / 2;
-    largest = fmax(largest, largest_difference(&p, &r, s));
+    largest = fmax(largest, largest_difference(&p, &r));
     if (s->force)
       for (int d = 0; d < 2; d++) largest = fmax(largest, fabs(momentum[d] - expected[d]) / CELLS);
   }
+  boundary_destroy(&boundary);
   populations_destroy(&p);
   reference_destroy(&r);
   gsl_rng_free(random);

@@ -1,51 +1,72 @@
-/* Boundaries, as passes over the ghost ring around the steps of parity 1; with parity 0 there is nothing to do.
+/* The sides of the box, as rules for the links through which populations come in from outside.
  *
- * A link is a cell at the edge and a population that comes from outside. In parity 1 the cell reads that population
- * from, and writes the one that leaves to, the same ghost slot G. Before its row is swept G must hold what arrives;
- * afterwards what left must be put where the next step, of parity 0, looks for what arrives.
+ * A link is a cell at the edge and one of the populations that reach it from outside. Once a cell has taken a step, each
+ * rule writes, from what that cell sent out, the population that some cell of the edge receives in the next step:
  *
- *   wall, inlet  half-way bounce-back: what left comes back with the wall's momentum (6 w rho e.u at the reference
- *                density).
- *   periodic     what left on the other side. In y the addresses wrap by themselves (populations.h).
- *   outlet       zero gradient along the normal: what arrives is what the edge cell itself sends inwards, but for a
- *                part of the cell's excess density. That holds the mean pressure, which a bare zero gradient lets
- *                drift, and is weak enough to let sound out.
+ *   received_i(target) = sent_m(source) + c[k],   k the number of the source along the side
  *
- * Each row has passes of its own that touch only slots of that row's cells: rows may run in any order and on any
- * thread. The one exception is an outlet, whose ghosts are read by the cells of the rows next to theirs, too: there all
- * rows must be filled before any is swept (boundary_fill_first), and a row's neighbours before it is read. At a corner a
- * wall wins over an inlet, that over an outlet, that over a periodic side; y wins over x among equals. */
+ *   wall, inlet  half-way bounce-back: target = source, m the opposite of i, c = 6 w_i e_i.u, the momentum of a wall or
+ *                inflow of velocity u at the reference density.
+ *   periodic     the source is the cell at the other end of the row, m = i, c = 0. Rows wrap in y by their address alone
+ *                (populations.h).
+ *   outlet       zero gradient: a ghost cell beside the source sends what the source sends, m = i, c = -w_i cut. The
+ *                density of the ghost thereby lies below that of the source by
+ *                  cut = h e + d,   (6/h) dd/dt = 3 d(e - j)/dt + cut - d,
+ *                e the excess over the reference density, taken at the face between both cells, and j the momentum along
+ *                the outward normal. Sound that passes changes 3 (e - j) by -cut a step; whatever else changes it, which
+ *                is pressure gradient and friction of the flow, d estimates. Sound is then reflected by the factor
+ *                -((2 - sqrt(3)) s + k)/(s + k), k = h/(3 + sqrt(3)), s = i times the angular frequency, whatever d does;
+ *                and the excess of steady flow, which with cut = h e would be its pressure gradient over h, vanishes
+ *                within some times 6/h steps.
+ *
+ * Corners. The diagonal link that comes out of the corner of two sides, neither of them periodic, is bounced back at the
+ * velocity whose components are the normal velocities of the two sides: that of an inlet, 0 of a wall, and of an outlet
+ * the velocity of the other side, which runs into it. So inlets let in exactly velocity times length, walls that run into
+ * a corner push no fluid through the other wall, and a uniform stream stays uniform. The corner of two outlets has a
+ * ghost cell with the mean cut of its neighbours.
+ *
+ * Every slot that a rule writes belongs to its link, or to the ghost cell, alone (populations.h): rows may run in any
+ * order that streaming allows, on any thread. */
 #ifndef DELBM_FLUID_BOUNDARY_H
 #define DELBM_FLUID_BOUNDARY_H
 
 #include "fluid/populations.h"
 
-/* The part of an edge cell's excess density that an outlet takes away each step, in a box of nx x ny cells. Sound that
- * meets the outlet sees its zero gradient, which lets most of it out, only where its angular frequency is well above a
- * third of this; below, the outlet holds the pressure and returns all of it. So the hold falls with the box, whose lowest
- * tone has the angular frequency c_s pi/(2 L). */
+struct outlet_cell;
+
+struct boundary {
+  const struct side *side; /* [SIDE_COUNT] */
+  int size[2];
+  double hold;                           /* h, of outlets */
+  double *c[SIDE_COUNT][3];              /* of each link, by cell along the side */
+  struct outlet_cell *ghost[SIDE_COUNT]; /* of an outlet, by cell along the side */
+};
+
+/* h. The lowest tone of a box has the angular frequency c_s pi/(2 L), L its length, and is to get out. */
 static inline double boundary_outlet_hold(int nx, int ny)
 {
   const int longest = nx > ny ? nx : ny;
   return longest > 5 ? 0.5 / longest : 0.1;
 }
 
-/* Fills the ghosts that row y reads in a step of parity 1, but for those of outlets: of these the ones beside the row's own
- * cells, which the rows next to it read too. May be repeated before that step. */
-void boundary_before_row(struct populations *populations, const struct side side[SIDE_COUNT], int y);
+/* For fluid at rest. The sides must outlive the boundary. */
+bool boundary_create(struct boundary *boundary, const struct side side[SIDE_COUNT], int nx, int ny,
+                     struct status *status);
+void boundary_destroy(struct boundary *boundary);
 
-/* The two parts of that: what outlets fill, from what the row's own cells have left in the step before, and the rest. */
-void boundary_outlets_before_row(struct populations *populations, const struct side side[SIDE_COUNT], int y);
-void boundary_others_before_row(struct populations *populations, const struct side side[SIDE_COUNT], int y);
+/* What the links receive once cells x0 .. x1 - 1 of row y have taken the step of populations->parity. */
+void boundary_after(struct boundary *boundary, struct populations *populations, int y, int x0, int x1);
 
-/* The same for cells x0 .. x1 - 1 of row y alone, where no side is an outlet. */
-void boundary_before(struct populations *populations, const struct side side[SIDE_COUNT], int y, int x0, int x1);
-void boundary_after(struct populations *populations, const struct side side[SIDE_COUNT], int y, int x0, int x1);
+/* What all links receive in the coming step, from populations that were read from a checkpoint. */
+void boundary_refill(struct boundary *boundary, struct populations *populations);
 
-/* True where boundary_before_row of every row must precede the sweep of any. */
-bool boundary_fill_first(const struct side side[SIDE_COUNT]);
+/* Starts outlets anew, with populations (of parity 0) that have been written and not yet collided. */
+void boundary_reset(struct boundary *boundary, const struct populations *populations);
 
-/* Brings what row y left in ghosts to where the next step reads it. */
-void boundary_after_row(struct populations *populations, const struct side side[SIDE_COUNT], int y);
+/* Saves or restores the ghost cells of outlets. */
+bool boundary_store(struct boundary *boundary, struct store *store, struct status *status);
+
+/* The velocity at which the link out of a corner is bounced back; NAN for two outlets. */
+void boundary_corner_velocity(const struct side *x, const struct side *y, double velocity[2]);
 
 #endif

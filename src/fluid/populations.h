@@ -39,7 +39,7 @@ bool populations_create(struct populations *populations, int nx, int ny, bool pe
                         struct status *status);
 void populations_destroy(struct populations *populations);
 
-/* Saves or restores the populations and their parity. Ghosts follow from them (boundary.h) and are left out. */
+/* Saves or restores the populations and their parity. Ghosts are left out: boundary_refill makes them again. */
 bool populations_store(struct populations *populations, struct store *store, struct status *status);
 
 /* Bytes that populations_create would map. */
@@ -65,6 +65,25 @@ static inline size_t populations_source(const struct populations *p, int i, int 
   return populations_slot(p, d2q9_opposite[i], x - d2q9_ex[i], y - d2q9_ey[i]);
 }
 
+/* Row y of the box, or the row that a periodic side takes y to. */
+static inline int populations_row(const struct populations *p, int y)
+{
+  return !p->periodic_y ? y : y < 0 ? y + p->ny : y >= p->ny ? y - p->ny : y;
+}
+
+/* Where cell (x, y) has put population i in the step just taken, of parity p->parity. */
+static inline size_t populations_sent(const struct populations *p, int i, int x, int y)
+{
+  return populations_source(p, d2q9_opposite[i], x, y);
+}
+
+/* Where cell (x, y) will read population i in the step after the one just taken. */
+static inline size_t populations_received(const struct populations *p, int i, int x, int y)
+{
+  if (p->parity == 1) return populations_slot(p, i, x, y);
+  return populations_slot(p, d2q9_opposite[i], x - d2q9_ex[i], y - d2q9_ey[i]);
+}
+
 static inline double populations_get(const struct populations *p, size_t slot)
 {
   return p->precision == PRECISION_DOUBLE ? ((const double *)p->block)[slot] : (double)((const float *)p->block)[slot];
@@ -81,8 +100,7 @@ static inline void populations_set(struct populations *p, size_t slot, double va
 /* Addresses a[i] from which cell (x, y), and those to its right after it, read f_i in the coming step. */
 void populations_cells(const struct populations *populations, int x, int y, void *a[Q]);
 
-/* Deviations of cell (x, y) that the coming step will collide. With parity 1 the ghosts must have been filled
- * (boundary_before_row) for cells beside a boundary. */
+/* Deviations of cell (x, y) that the coming step will collide. */
 void populations_cell(const struct populations *populations, int x, int y, double g[Q]);
 
 #endif

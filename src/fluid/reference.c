@@ -12,7 +12,9 @@ bool reference_create(struct reference *r, int nx, int ny, struct status *status
   *r = (struct reference){.nx = nx, .ny = ny};
   r->f = memory_allocate(count, sizeof *r->f, "the reference populations", status);
   if (r->f) r->collided = memory_allocate(count, sizeof *r->collided, "the reference populations", status);
-  if (!r->f || !r->collided) {
+  for (int s = 0; s < SIDE_COUNT; s++)
+    r->ghost[s] = memory_allocate(count / Q, sizeof *r->ghost[s], "the reference outlets", status);
+  if (!r->f || !r->collided || !r->ghost[0] || !r->ghost[1] || !r->ghost[2] || !r->ghost[3]) {
     reference_destroy(r);
     return false;
   }
@@ -24,6 +26,7 @@ void reference_destroy(struct reference *r)
 {
   free(r->f);
   free(r->collided);
+  for (int s = 0; s < SIDE_COUNT; s++) free(r->ghost[s]);
   *r = (struct reference){0};
 }
 
@@ -97,14 +100,9 @@ static void collide(const double f[Q], const struct sweep_constants *c, enum cou
   }
 }
 
-/* The side that rules the link from outside; corners as in boundary.h. */
-static const struct side *ruling_side(const struct side side[SIDE_COUNT], int sx, int sy, int nx, int ny)
+static bool is_outlet(const struct side *side)
 {
-  static const int order[] = {[SIDE_PERIODIC] = 0, [SIDE_OUTLET] = 1, [SIDE_INLET] = 2, [SIDE_WALL] = 3};
-  const struct side *x = sx < 0 ? &side[SIDE_LEFT] : sx >= nx ? &side[SIDE_RIGHT] : NULL;
-  const struct side *y = sy < 0 ? &side[SIDE_BOTTOM] : sy >= ny ? &side[SIDE_TOP] : NULL;
-  if (!x || !y) return x ? x : y;
-  return order[y->type] >= order[x->type] ? y : x;
+  return side && side->type == SIDE_OUTLET;
 }
 
 static int wrap_or_clamp(int s, int n, bool periodic)
@@ -113,21 +111,73 @@ static int wrap_or_clamp(int s, int n, bool periodic)
   return (s < 0) == periodic ? n - 1 : 0;
 }
 
+/* Population i of cell (x, y) after streaming from (sx, sy): inside, beyond one side, or beyond two. */
 static double streamed(const struct reference *r, const struct side side[SIDE_COUNT], int x, int y, int i)
 {
   const int sx = x - d2q9_ex[i], sy = y - d2q9_ey[i];
-  const struct side *ruling = ruling_side(side, sx, sy, r->nx, r->ny);
-  if (ruling && (ruling->type == SIDE_WALL || ruling->type == SIDE_INLET)) {
-    const size_t own = ((size_t)y * (size_t)r->nx + (size_t)x) * Q;
-    return r->collided[own + (size_t)d2q9_opposite[i]] + d2q9_wall_momentum(i, ruling->velocity);
+  const bool periodic_x = side[SIDE_LEFT].type == SIDE_PERIODIC, periodic_y = side[SIDE_BOTTOM].type == SIDE_PERIODIC;
+  const struct side *past_x = periodic_x ? NULL : sx < 0 ? &side[SIDE_LEFT] : sx >= r->nx ? &side[SIDE_RIGHT] : NULL;
+  const struct side *past_y = periodic_y ? NULL : sy < 0 ? &side[SIDE_BOTTOM] : sy >= r->ny ? &side[SIDE_TOP] : NULL;
+  const size_t own = (size_t)y * (size_t)r->nx + (size_t)x;
+  const size_t from =
+      (size_t)wrap_or_clamp(sy, r->ny, periodic_y) * (size_t)r->nx + (size_t)wrap_or_clamp(sx, r->nx, periodic_x);
+  const bool all_out = (past_x || past_y) && (!past_x || is_outlet(past_x)) && (!past_y || is_outlet(past_y));
+  if (!past_x && !past_y) return r->collided[from * Q + (size_t)i];
+  if (all_out) {
+    const double cut_x = past_x ? r->ghost[past_x - side][from].cut : r->ghost[past_y - side][from].cut;
+    const double cut_y = past_y ? r->ghost[past_y - side][from].cut : cut_x;
+    return r->collided[from * Q + (size_t)i] - d2q9_weight[i] * (cut_x + cut_y) / 2;
   }
-  const int fx = wrap_or_clamp(sx, r->nx, side[SIDE_LEFT].type == SIDE_PERIODIC);
-  const int fy = wrap_or_clamp(sy, r->ny, side[SIDE_BOTTOM].type == SIDE_PERIODIC);
-  const double *from = r->collided + ((size_t)fy * (size_t)r->nx + (size_t)fx) * Q;
-  double excess = -1;
-  for (int k = 0; k < Q; k++) excess += from[k];
-  const bool outlet = ruling && ruling->type == SIDE_OUTLET;
-  return from[i] - (outlet ? boundary_outlet_hold(r->nx, r->ny) * d2q9_weight[i] * excess : 0);
+  double u[2];
+  for (int d = 0; d < 2; d++) {
+    if (!past_y || is_outlet(past_y))
+      u[d] = past_x->velocity[d];
+    else if (!past_x || is_outlet(past_x))
+      u[d] = past_y->velocity[d];
+    else
+      u[d] = d == 0 ? past_x->velocity[0] : past_y->velocity[1];
+  }
+  return r->collided[own * Q + (size_t)d2q9_opposite[i]] + d2q9_wall_momentum(i, u);
+}
+
+/* 3 (rho - j), j the momentum against (ex, ey). */
+static double less_momentum(const double *f, int ex, int ey)
+{
+  double sum = 0;
+  for (int i = 0; i < Q; i++) sum += 3 * f[i] * (1 + d2q9_ex[i] * ex + d2q9_ey[i] * ey);
+  return sum;
+}
+
+static double density_of(const double *f)
+{
+  double sum = 0;
+  for (int i = 0; i < Q; i++) sum += f[i];
+  return sum;
+}
+
+/* The step of an outlet's ghost cell (boundary.h) beside a cell, with (ex, ey) the direction into the box. */
+static void update_ghost(struct reference *r, enum side_name name, size_t cell, int ex, int ey)
+{
+  const double hold = boundary_outlet_hold(r->nx, r->ny), *f = r->collided + cell * Q;
+  const double now = less_momentum(f, ex, ey), rho = density_of(f);
+  struct reference_ghost *ghost = &r->ghost[name][cell];
+  if (!r->stepped) ghost->last = less_momentum(r->f + cell * Q, ex, ey);
+  ghost->drift += hold / 6 * (now - ghost->last + ghost->cut - ghost->drift);
+  ghost->cut = hold * (rho - 1 - ghost->cut / 2) + ghost->drift;
+  ghost->last = now;
+}
+
+static void update_ghosts(struct reference *r, const struct side side[SIDE_COUNT])
+{
+  const size_t nx = (size_t)r->nx, ny = (size_t)r->ny;
+  for (size_t y = 0; y < ny; y++) {
+    if (is_outlet(&side[SIDE_LEFT])) update_ghost(r, SIDE_LEFT, y * nx, 1, 0);
+    if (is_outlet(&side[SIDE_RIGHT])) update_ghost(r, SIDE_RIGHT, y * nx + nx - 1, -1, 0);
+  }
+  for (size_t x = 0; x < nx; x++) {
+    if (is_outlet(&side[SIDE_BOTTOM])) update_ghost(r, SIDE_BOTTOM, x, 0, 1);
+    if (is_outlet(&side[SIDE_TOP])) update_ghost(r, SIDE_TOP, (ny - 1) * nx + x, 0, -1);
+  }
 }
 
 void reference_step(struct reference *r, const struct side side[SIDE_COUNT], const struct sweep_constants *constants,
@@ -139,6 +189,8 @@ void reference_step(struct reference *r, const struct side side[SIDE_COUNT], con
     const double bv[2] = {cover->b ? cover->bvx[k] : 0, cover->b ? cover->bvy[k] : 0};
     collide(r->f + k * Q, constants, cover->form, b, bv, r->collided + k * Q);
   }
+  update_ghosts(r, side);
+  r->stepped = true;
   for (int y = 0; y < r->ny; y++)
     for (int x = 0; x < r->nx; x++)
       for (int i = 0; i < Q; i++)

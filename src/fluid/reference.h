@@ -5,9 +5,16 @@
 
 #include "fluid/sweep.h"
 
+/* A ghost cell of an outlet: d and cut of boundary.h, and 3 (rho - j) of the cell beside it one step ago. */
+struct reference_ghost {
+  double drift, cut, last;
+};
+
 struct reference {
   int nx, ny;
-  double *f, *collided; /* [(y * nx + x) * Q + i] */
+  double *f, *collided;                      /* [(y * nx + x) * Q + i] */
+  struct reference_ghost *ghost[SIDE_COUNT]; /* of outlets, by cell of the box */
+  bool stepped;
 };
 
 /* Per cell B and B v, as row_cover but for the whole box; NULL arrays for fluid alone. */

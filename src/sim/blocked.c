@@ -1,12 +1,10 @@
 #include "sim/blocked.h"
 
-#include "fluid/boundary.h"
-
 #include <omp.h>
 
 bool blocked_possible(const struct scene *scene)
 {
-  return !scene->fluid.zero_flux && !boundary_fill_first(scene->domain.side);
+  return !scene->fluid.zero_flux;
 }
 
 int blocked_deepest(int ny, int threads)
@@ -31,18 +29,17 @@ static struct slab slab_of(const struct slab *whole, int number, int count)
 }
 
 /* Cells x0 .. x1 - 1 of row y, which may lie beyond a periodic side, one step of the given parity. */
-static void update(const struct flow *f, int parity, int y, int x0, int x1)
+static void update(struct flow *f, int parity, int y, int x0, int x1)
 {
   if (x0 >= x1) return;
   struct populations p = f->populations; /* the parity of a block's steps differs from row to row */
   p.parity = parity;
-  y = y < 0 ? y + p.ny : y >= p.ny ? y - p.ny : y;
+  y = populations_row(&p, y);
   void *a[Q];
   double momentum[2];
-  if (parity) boundary_before(&p, f->scene->domain.side, y, x0, x1);
   populations_cells(&p, x0, y, a);
   f->kernel->fluid[f->adaptive][f->force](a, x1 - x0, &f->constants, NULL, momentum);
-  if (parity) boundary_after(&p, f->scene->domain.side, y, x0, x1);
+  boundary_after(&f->boundary, &p, y, x0, x1);
 }
 
 static int clamp(int at, int low, int high)
@@ -51,7 +48,7 @@ static int clamp(int at, int low, int high)
 }
 
 /* Step s of tile number k (of the last, if `last`) in row y. */
-static void update_tile(const struct flow *f, int y, int s, int k, int width, bool last)
+static void update_tile(struct flow *f, int y, int s, int k, int width, bool last)
 {
   const int nx = f->populations.nx, parity = f->populations.parity ^ (s & 1);
   const bool ring = f->scene->domain.side[SIDE_LEFT].type == SIDE_PERIODIC;
@@ -64,7 +61,7 @@ static void update_tile(const struct flow *f, int y, int s, int k, int width, bo
 }
 
 /* A wavefront over the slab, tile by tile. */
-static void sweep_slab(const struct flow *f, const struct slab *slab, int width, int steps)
+static void sweep_slab(struct flow *f, const struct slab *slab, int width, int steps)
 {
   const int tiles = (f->populations.nx + width - 1) / width;
   for (int k = 0; k < tiles; k++)
@@ -77,7 +74,7 @@ static void sweep_slab(const struct flow *f, const struct slab *slab, int width,
 }
 
 /* What slabs left out on both sides of the border below row `border`. */
-static void sweep_border(const struct flow *f, int border, int steps)
+static void sweep_border(struct flow *f, int border, int steps)
 {
   for (int s = 1; s < steps; s++)
     for (int y = border - s; y < border + s; y++) update(f, f->populations.parity ^ (s & 1), y, 0, f->populations.nx);

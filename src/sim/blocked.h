@@ -25,7 +25,7 @@ struct blocking {
   int width; /* cells of a tile; 0: whole rows */
 };
 
-/* True if the scene can be blocked in time: nothing that sums over the box each step, no outlets. */
+/* True if the scene can be blocked in time: nothing that sums over the box each step. */
 bool blocked_possible(const struct scene *scene);
 
 /* The most steps a block can have in a box of ny rows shared by so many threads. */

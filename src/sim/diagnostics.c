@@ -1,7 +1,6 @@
 #include "sim/diagnostics.h"
 
 #include "base/threads.h"
-#include "fluid/boundary.h"
 
 #include <math.h>
 
@@ -22,18 +21,9 @@ static struct cell_moments moments_at(const struct populations *p, int x, int y)
   return m;
 }
 
-/* Of all rows before any is read: beside an outlet a row reads ghosts that are filled with its neighbours. */
-static void fill_ghosts(struct populations *p, const struct side side[SIDE_COUNT])
-{
-  if (p->parity == 0) return;
-#pragma omp parallel for schedule(static) num_threads(threads_for((int64_t)p->nx * p->ny))
-  for (int y = 0; y < p->ny; y++) boundary_before_row(p, side, y);
-}
-
-struct fluid_totals diagnostics_totals(struct populations *p, const struct side side[SIDE_COUNT])
+struct fluid_totals diagnostics_totals(const struct populations *p)
 {
   struct fluid_totals totals = {0};
-  fill_ghosts(p, side);
 #pragma omp parallel for ordered schedule(static, 1) num_threads(threads_for((int64_t)p->nx * p->ny))
   for (int y = 0; y < p->ny; y++) {
     struct fluid_totals row = {0};
@@ -72,11 +62,10 @@ static bool worse(double a, double b)
   return isnan(a) ? !isnan(b) : a > b;
 }
 
-struct worst_cell diagnostics_worst(struct populations *p, scan_row *scan, const struct side side[SIDE_COUNT])
+struct worst_cell diagnostics_worst(const struct populations *p, scan_row *scan)
 {
   double worst = -1;
   int row = 0;
-  fill_ghosts(p, side);
 #pragma omp parallel num_threads(threads_for((int64_t)p->nx * p->ny))
   {
     double own = -1;
@@ -106,10 +95,9 @@ void diagnostics_row(const struct populations *p, const struct fluid_force *forc
   }
 }
 
-void diagnostics_fields(struct populations *p, const struct side side[SIDE_COUNT], const struct fluid_force *force,
-                        double *density, double *ux, double *uy)
+void diagnostics_fields(const struct populations *p, const struct fluid_force *force, double *density, double *ux,
+                        double *uy)
 {
-  fill_ghosts(p, side);
 #pragma omp parallel for schedule(static) num_threads(threads_for((int64_t)p->nx * p->ny))
   for (int y = 0; y < p->ny; y++) {
     const size_t at = (size_t)y * (size_t)p->nx;

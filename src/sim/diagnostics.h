@@ -20,24 +20,22 @@ struct worst_cell {
   int x, y;
 };
 
-/* Both read the populations that the coming step will collide; with parity 1 ghosts are filled first. Outside of
- * parallel regions. */
-struct fluid_totals diagnostics_totals(struct populations *populations, const struct side side[SIDE_COUNT]);
-struct worst_cell diagnostics_worst(struct populations *populations, scan_row *scan,
-                                    const struct side side[SIDE_COUNT]);
+/* Both read the populations that the coming step will collide. Outside of parallel regions. */
+struct fluid_totals diagnostics_totals(const struct populations *populations);
+struct worst_cell diagnostics_worst(const struct populations *populations, scan_row *scan);
 
 /* Body force per unit mass and per unit volume that act on the fluid. */
 struct fluid_force {
   double mass[2], uniform[2];
 };
 
-/* Density and velocity of the cells of row y, whose ghosts have been filled, into arrays of nx. */
+/* Density and velocity of the cells of row y into arrays of nx. */
 void diagnostics_row(const struct populations *populations, const struct fluid_force *force, int y, double *density,
                      double *ux, double *uy);
 
 /* Density and velocity (j + F/2)/rho, F = rho force + uniform, of every cell into arrays of nx * ny; any may be NULL.
  * */
-void diagnostics_fields(struct populations *populations, const struct side side[SIDE_COUNT],
-                        const struct fluid_force *force, double *density, double *ux, double *uy);
+void diagnostics_fields(const struct populations *populations, const struct fluid_force *force, double *density,
+                        double *ux, double *uy);
 
 #endif

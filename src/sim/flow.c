@@ -1,7 +1,6 @@
 #include "sim/flow.h"
 
 #include "base/memory.h"
-#include "fluid/boundary.h"
 #include "lattice/moments.h"
 
 #include <omp.h>
@@ -19,6 +18,7 @@ bool flow_create(struct flow *f, const struct scene *scene, const struct plan *p
   if (!f->kernel) return false;
   if (!populations_create(&f->populations, nx, ny, scene_is_periodic(scene, 1), scene->fluid.precision, status))
     return false;
+  if (!boundary_create(&f->boundary, scene->domain.side, nx, ny, status)) return false;
   if (!f->force) return true;
   f->row_momentum = memory_allocate((size_t)ny, sizeof *f->row_momentum, "the rows' momentum", status);
   return f->row_momentum != NULL;
@@ -29,6 +29,7 @@ void flow_destroy(struct flow *f)
   for (int t = 0; f->covers && t < f->threads; t++) cover_destroy(&f->covers[t]);
   free(f->covers);
   free(f->row_momentum);
+  boundary_destroy(&f->boundary);
   populations_destroy(&f->populations);
 }
 
@@ -98,31 +99,28 @@ void flow_start(struct flow *f, flow_initial *initial, const void *context, cons
       }
     }
   }
+  boundary_reset(&f->boundary, &f->populations);
 }
 
 void flow_set(struct flow *f, const double *density, const double *ux, const double *uy)
 {
   const int nx = f->populations.nx;
-  f->populations.parity = 0; /* of the two that in which no cell's slots lie in ghosts, which boundaries fill */
+  f->populations.parity = 0; /* the one in which no cell reads ghosts */
   for (int y = 0; y < f->populations.ny; y++)
     for (int x = 0; x < nx; x++) {
       const size_t at = (size_t)y * (size_t)nx + (size_t)x;
       const struct flow_state state = {.density = density[at], .velocity = {ux[at], uy[at]}};
       set_state(f, x, y, &state);
     }
+  boundary_reset(&f->boundary, &f->populations);
 }
 
 bool flow_store(struct flow *f, struct store *store, struct status *status)
 {
   return populations_store(&f->populations, store, status) &&
          store_bytes(store, f->constants.uniform, sizeof f->constants.uniform, status) &&
-         store_bytes(store, f->mean_momentum, sizeof f->mean_momentum, status);
-}
-
-void stage_boundary(struct flow *f)
-{
-#pragma omp for schedule(static)
-  for (int y = 0; y < f->populations.ny; y++) boundary_before_row(&f->populations, f->scene->domain.side, y);
+         store_bytes(store, f->mean_momentum, sizeof f->mean_momentum, status) &&
+         boundary_store(&f->boundary, store, status);
 }
 
 static void sweep_row_at(struct flow *f, int y, const struct sweep_discs *discs)
@@ -164,13 +162,11 @@ static void cancel_flux(struct flow *f)
   }
 }
 
-/* Takes the moments of row y, about to be collided in the state `p`, for the discs that cover it. What outlets send into the
- * row has been put into the ghosts, also of the rows next to it. */
-static void take_sums(const struct flow *f, struct populations *p, struct occupation *o, int y)
+/* Takes the moments of row y, about to be collided in the state `p`, for the discs that cover it. */
+static void take_sums(const struct flow *f, const struct populations *p, struct occupation *o, int y)
 {
   const struct band *band = occupation_band(o, y);
   const size_t first = band->row_start[y % BAND_ROWS], end = band->row_end[y % BAND_ROWS];
-  if (p->parity) boundary_others_before_row(p, f->scene->domain.side, y);
   if (first == end) return;
   void *a[Q];
   populations_cells(p, 0, y, a);
@@ -179,47 +175,32 @@ static void take_sums(const struct flow *f, struct populations *p, struct occupa
 
 void stage_first_sums(struct flow *f, struct occupation *o)
 {
-  const struct side *side = f->scene->domain.side;
-#pragma omp for schedule(static)
-  for (int y = 0; y < f->populations.ny; y++)
-    if (f->populations.parity) boundary_outlets_before_row(&f->populations, side, y);
 #pragma omp for schedule(static)
   for (int y = 0; y < f->populations.ny; y++) take_sums(f, &f->populations, o, y);
-#pragma omp single
-  f->ghosts_filled = true;
 }
 
-static int row_in_box(const struct populations *p, int y)
-{
-  return y < 0 ? y + p->ny : y >= p->ny ? y - p->ny : y;
-}
-
-void stage_sweep(struct flow *f, const struct rows *rows, bool ghosts_filled, const struct sweep_discs *discs)
+void stage_sweep(struct flow *f, const struct rows *rows, const struct sweep_discs *discs)
 {
   struct populations *p = &f->populations;
   struct populations after = *p; /* the same populations, as the next step will read them */
-  const struct side *side = f->scene->domain.side;
   const int64_t thread = omp_get_thread_num(), threads = omp_get_num_threads(), count = rows->end - rows->first;
   const int first = rows->first + (int)(count * thread / threads);
   const int end = rows->first + (int)(count * (thread + 1) / threads);
   after.parity ^= 1;
   for (int k = first; k < end; k++) {
-    const int y = row_in_box(p, k);
-    if (p->parity && !ghosts_filled) boundary_before_row(p, side, y);
+    const int y = populations_row(p, k);
     sweep_row_at(f, y, discs);
-    if (p->parity) boundary_after_row(p, side, y);
-    if (discs->next && after.parity) boundary_outlets_before_row(&after, side, y);
-    if (discs->next && k > first + 1) take_sums(f, &after, discs->next, row_in_box(p, k - 1));
+    boundary_after(&f->boundary, p, y, 0, p->nx);
+    if (discs->next && k > first + 1) take_sums(f, &after, discs->next, populations_row(p, k - 1));
   }
 #pragma omp barrier
   /* the ends of a thread's rows wait for their neighbours, which are another thread's */
-  if (discs->next && first < end) take_sums(f, &after, discs->next, row_in_box(p, first));
-  if (discs->next && first < end - 1) take_sums(f, &after, discs->next, row_in_box(p, end - 1));
+  if (discs->next && first < end) take_sums(f, &after, discs->next, populations_row(p, first));
+  if (discs->next && first < end - 1) take_sums(f, &after, discs->next, populations_row(p, end - 1));
 #pragma omp barrier
 #pragma omp single
   {
     if (f->scene->fluid.zero_flux) cancel_flux(f);
-    f->ghosts_filled = discs->next && count == p->ny;
     p->parity ^= 1;
   }
 }

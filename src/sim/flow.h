@@ -1,10 +1,10 @@
-/* The sweep over all cells, and the boundary pass before it. Rows are shared out in order and
- * without branches per cell: rows that no disc touches take the kernel without discs. A step of parity 0 needs no
- * boundary at all. */
+/* The sweep over all cells, each row followed by its links to the sides. Rows are shared out in order and without
+ * branches per cell: rows that no disc touches take the kernel without discs. */
 #ifndef DELBM_SIM_FLOW_H
 #define DELBM_SIM_FLOW_H
 
 #include "coupling/cover.h"
+#include "fluid/boundary.h"
 #include "sim/diagnostics.h"
 #include "sim/initial.h"
 #include "sim/plan.h"
@@ -15,12 +15,12 @@ struct flow {
   bool force;
   bool adaptive; /* rates */
   struct populations populations;
+  struct boundary boundary;
   struct sweep_constants constants;
   double (*row_momentum)[2]; /* after the sweep, of each row; with a force only */
   double mean_momentum[2];   /* with zero_flux: what the last step left, a cell */
   struct cover *covers;      /* of each thread */
   int threads;
-  bool ghosts_filled; /* of all rows, by the last sweep */
 };
 
 bool flow_create(struct flow *flow, const struct scene *scene, const struct plan *plan, struct status *status);
@@ -55,22 +55,17 @@ struct sweep_discs {
   struct occupation *next;         /* takes the sums of the next exchange; may be the same as `now` */
 };
 
-/* All are called by all threads of a parallel region or outside of one.
- *
- * stage_boundary fills the ghosts of all rows before a sweep of parity 1, where boundary_fill_first says so. */
-void stage_boundary(struct flow *flow);
-
 /* Rows first .. end - 1; those beyond a periodic side are counted on. */
 struct rows {
   int first, end;
 };
 
 /* The sweep of the given rows. With discs each row's moments are taken for the next exchange once the row and its
- * neighbours are done, which also fills the row's ghosts if the next step needs them. Ends with the next step's parity and
- * uniform force. */
-void stage_sweep(struct flow *flow, const struct rows *rows, bool ghosts_filled, const struct sweep_discs *discs);
+ * neighbours are done. Ends with the next step's parity and uniform force. Called by all threads of a parallel region or
+ * outside of one. */
+void stage_sweep(struct flow *flow, const struct rows *rows, const struct sweep_discs *discs);
 
-/* The sums of the first exchange, which no sweep precedes. */
+/* The sums of the first exchange, which no sweep precedes. Called likewise. */
 void stage_first_sums(struct flow *flow, struct occupation *occupation);
 
 #endif

@@ -2,7 +2,6 @@
 
 #include "base/memory.h"
 #include "base/threads.h"
-#include "fluid/boundary.h"
 #include "fluid/vorticity.h"
 #include "sim/diagnostics.h"
 #include "solid/occupation.h"
@@ -84,14 +83,12 @@ static void sample_row(const struct sampling *s, const struct rows *rows, int ro
   }
 }
 
-bool sample_take(struct populations *p, const struct side side[SIDE_COUNT], const struct fluid_force *force,
+bool sample_take(const struct populations *p, const bool periodic[2], const struct fluid_force *force,
                  const struct occupation *occupation, const struct sample_grid *grid, const struct sample *sample,
                  struct status *status)
 {
   enum { BUFFERS = 8 };
-  const struct sampling sampling = {
-      p,    force,  occupation,
-      grid, sample, {side[SIDE_LEFT].type == SIDE_PERIODIC, side[SIDE_BOTTOM].type == SIDE_PERIODIC}};
+  const struct sampling sampling = {p, force, occupation, grid, sample, {periodic[0], periodic[1]}};
   const int threads = threads_for((int64_t)p->nx * p->ny);
   const size_t nx = (size_t)p->nx;
   double *buffers = memory_allocate((size_t)threads * BUFFERS, nx * sizeof *buffers, "rows of fields", status);
@@ -101,9 +98,6 @@ bool sample_take(struct populations *p, const struct side side[SIDE_COUNT], cons
     double *own = buffers + (size_t)omp_get_thread_num() * BUFFERS * nx;
     const struct rows rows = {own,          own + nx,     own + 2 * nx, own + 3 * nx,
                               own + 4 * nx, own + 5 * nx, own + 6 * nx, own + 7 * nx};
-#pragma omp for schedule(static)
-    for (int y = 0; y < p->ny; y++)
-      if (p->parity) boundary_before_row(p, side, y);
 #pragma omp for schedule(static)
     for (int row = 0; row < grid->count[1]; row++) sample_row(&sampling, &rows, row);
   }

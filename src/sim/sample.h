@@ -32,8 +32,9 @@ struct populations;
 struct fluid_force;
 struct occupation;
 
-/* Outside of parallel regions. `occupation` is NULL in a scene without discs. Fails only for want of memory. */
-bool sample_take(struct populations *populations, const struct side side[SIDE_COUNT], const struct fluid_force *force,
+/* Outside of parallel regions. `periodic`: the sides of each axis. `occupation` is NULL in a scene without discs. Fails only
+ * for want of memory. */
+bool sample_take(const struct populations *populations, const bool periodic[2], const struct fluid_force *force,
                  const struct occupation *occupation, const struct sample_grid *grid, const struct sample *sample,
                  struct status *status);
 

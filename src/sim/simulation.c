@@ -2,7 +2,6 @@
 
 #include "base/memory.h"
 #include "base/threads.h"
-#include "fluid/boundary.h"
 #include "sim/diagnostics.h"
 #include "sim/flow.h"
 #include "sim/footprint.h"
@@ -33,7 +32,7 @@ struct simulation {
 /* Momentum that the coupling conserves: of all fluid, inside discs too, and (m - m_f) V of each disc. */
 static void conserved_momentum(struct simulation *s, double momentum[2])
 {
-  const struct fluid_totals fluid = diagnostics_totals(&s->flow.populations, s->scene->domain.side);
+  const struct fluid_totals fluid = diagnostics_totals(&s->flow.populations);
   momentum[0] = fluid.jx;
   momentum[1] = fluid.jy;
   for (size_t i = 0; i < s->discs.count; i++) {
@@ -160,12 +159,7 @@ static bool step(struct simulation *s, const struct rows *rows, double *since)
     if (!discs_stay_within(s, next, rows)) return false;
     discs = (struct sweep_discs){.now = now, .exchange = &s->exchange, .next = next};
   }
-  const bool fill_first = s->flow.populations.parity && !s->plan.exchange && boundary_fill_first(s->scene->domain.side);
-  if (fill_first) {
-    stage_boundary(&s->flow);
-    charge(s, STAGE_BOUNDARY, since);
-  }
-  stage_sweep(&s->flow, rows, fill_first || s->flow.ghosts_filled, &discs);
+  stage_sweep(&s->flow, rows, &discs);
   charge(s, STAGE_SWEEP, since);
   return true;
 }
@@ -259,7 +253,7 @@ static double congestion(struct simulation *s)
   const struct side *side = s->scene->domain.side;
   bool inlet = false;
   for (enum side_name name = 0; name < SIDE_COUNT; name++) inlet |= side[name].type == SIDE_INLET;
-  return inlet ? diagnostics_totals(&s->flow.populations, side).excess_mass / (double)scene_cells(s->scene) : 0;
+  return inlet ? diagnostics_totals(&s->flow.populations).excess_mass / (double)scene_cells(s->scene) : 0;
 }
 
 /* Where more fluid enters than leaves, its pressure rises until something gives way: then this is the cause. */
@@ -277,7 +271,7 @@ bool simulation_check(struct simulation *s, struct status *status)
     *status = s->team.first;
     return false;
   }
-  const struct worst_cell worst = diagnostics_worst(&s->flow.populations, s->flow.kernel->scan, s->scene->domain.side);
+  const struct worst_cell worst = diagnostics_worst(&s->flow.populations, s->flow.kernel->scan);
   const double speed = sqrt(worst.speed2), mach = speed * sqrt(3), most_congestion = 0.5;
   const long long step = (long long)s->step;
   if (isnan(speed)) {
@@ -368,7 +362,9 @@ bool simulation_changed(struct simulation *s, struct status *status)
 
 bool simulation_restore(struct simulation *s, struct store *store, struct status *status)
 {
-  return store_state(s, store, status) && check_places(s, store, status) && follow_up(s, status);
+  if (!store_state(s, store, status) || !check_places(s, store, status)) return false;
+  boundary_refill(&s->flow.boundary, &s->flow.populations);
+  return follow_up(s, status);
 }
 
 void simulation_set_fluid(struct simulation *s, const double *density, const double *ux, const double *uy)
@@ -404,15 +400,15 @@ const struct occupation *simulation_occupation(const struct simulation *s)
 void simulation_fields(struct simulation *s, double *density, double *ux, double *uy)
 {
   const struct fluid_force force = flow_force(&s->flow);
-  diagnostics_fields(&s->flow.populations, s->scene->domain.side, &force, density, ux, uy);
+  diagnostics_fields(&s->flow.populations, &force, density, ux, uy);
 }
 
 bool simulation_sample(struct simulation *s, const struct sample_grid *grid, const struct sample *sample,
                        struct status *status)
 {
   const struct fluid_force force = flow_force(&s->flow);
-  return sample_take(&s->flow.populations, s->scene->domain.side, &force, simulation_occupation(s), grid, sample,
-                     status);
+  const bool periodic[2] = {scene_is_periodic(s->scene, 0), scene_is_periodic(s->scene, 1)};
+  return sample_take(&s->flow.populations, periodic, &force, simulation_occupation(s), grid, sample, status);
 }
 
 /* Change of the conserved momentum that body forces do not explain; NAN where something else exchanges momentum. */
@@ -436,14 +432,13 @@ static double momentum_drift(struct simulation *s)
 void simulation_report(struct simulation *s, struct simulation_report *report)
 {
   const double cells = (double)s->scene->domain.size[0] * s->scene->domain.size[1];
-  *report = (struct simulation_report){
-      .threads = threads_for(scene_cells(s->scene)),
-      .kernel = s->flow.kernel->name,
-      .times = s->times,
-      .mass_drift = fabs(diagnostics_totals(&s->flow.populations, s->scene->domain.side).excess_mass) / cells,
-      .momentum_drift = momentum_drift(s),
-      .max_mach = s->max_mach,
-      .max_substeps = s->plan.exchange ? s->contacts.most_substeps : 1};
+  *report = (struct simulation_report){.threads = threads_for(scene_cells(s->scene)),
+                                       .kernel = s->flow.kernel->name,
+                                       .times = s->times,
+                                       .mass_drift = fabs(diagnostics_totals(&s->flow.populations).excess_mass) / cells,
+                                       .momentum_drift = momentum_drift(s),
+                                       .max_mach = s->max_mach,
+                                       .max_substeps = s->plan.exchange ? s->contacts.most_substeps : 1};
   tuning_text(&s->tuning, report->plan);
   threads_binding(report->binding);
 }
