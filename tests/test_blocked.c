@@ -1,5 +1,4 @@
 /* The sweep blocked in time, and single precision. */
-#include "fluid/boundary.h"
 #include "scenes.h"
 #include "sim/blocked.h"
 #include "sim/simulation.h"
@@ -21,6 +20,10 @@ static void stir(struct populations *p)
       }
 }
 
+/* `sides`, by bits: periodic in x (1) and y (2), an inlet and an outlet in x (4), outlets in y (8). */
+static const int boxes[] = {0, 1, 2, 3, 4, 6, 8, 9, 12};
+enum { BOXES = sizeof boxes / sizeof boxes[0] };
+
 static struct scene stirred_box(int nx, int ny, int sides)
 {
   struct scene scene = scene_box(nx, ny, 0.02, SIDES_CLOSED);
@@ -28,6 +31,9 @@ static struct scene stirred_box(int nx, int ny, int sides)
   if (sides & 2) scene.domain.side[SIDE_BOTTOM].type = scene.domain.side[SIDE_TOP].type = SIDE_PERIODIC;
   if (!(sides & 2)) scene.domain.side[SIDE_TOP].velocity[0] = 0.05;
   if (!(sides & 1)) scene.domain.side[SIDE_LEFT].velocity[1] = -0.03;
+  if (sides & 4) scene.domain.side[SIDE_LEFT] = (struct side){SIDE_INLET, {0.04, -0.01}};
+  if (sides & 4) scene.domain.side[SIDE_RIGHT].type = SIDE_OUTLET;
+  if (sides & 8) scene.domain.side[SIDE_BOTTOM].type = scene.domain.side[SIDE_TOP].type = SIDE_OUTLET;
   return scene;
 }
 
@@ -61,8 +67,9 @@ Test(blocked, any_depth_width_and_number_of_threads_gives_the_bits_of_single_ste
 {
   static const int depths[] = {1, 2, 3, 8, 11}, widths[] = {0, 16, 30}, threads[] = {1, 2, 3};
   static double expected[NX * NY * Q], obtained[NX * NY * Q];
-  for (int sides = 0; sides < 4; sides++)
+  for (int box = 0; box < BOXES; box++)
     for (int way = 0; way < 4; way++) {
+      const int sides = boxes[box];
       struct scene scene = stirred_box(NX, NY, sides);
       if (way % 2) scene.fluid.force[0] = 1e-4;
       if (way / 2) scene_use_paper_rates(&scene);
@@ -86,7 +93,8 @@ Test(blocked, deeper_than_the_box_is_wide_gives_the_bits_of_single_steps)
   static const int sizes[] = {1, 2, 3, 5, 8, 17, 20}, depths[] = {4, 16, 23}, widths[] = {0, 1, 4, 7};
   static double expected[20 * NY * Q], obtained[20 * NY * Q];
   for (size_t n = 0; n < sizeof sizes / sizeof sizes[0]; n++)
-    for (int sides = 0; sides < 4; sides++) {
+    for (int box = 0; box < BOXES; box++) {
+      const int sides = boxes[box];
       const struct scene scene = stirred_box(sizes[n], NY, sides);
       const size_t bytes = (size_t)sizes[n] * NY * Q * sizeof(double);
       populations_after(&scene, &(struct blocking){.depth = 0}, 1, expected);
@@ -141,7 +149,7 @@ Test(single, precision_stays_within_1e_4_of_double_in_a_cavity)
 }
 
 /* Discs near each other, one of them fast, one fixed, in a tall box. */
-static struct scene few_discs(bool periodic)
+static struct scene few_discs(bool periodic, bool outlet)
 {
   struct scene scene = scene_box(40, 210, 0.02, periodic ? SIDES_PERIODIC : SIDES_CLOSED);
   scene.particles.gravity[1] = -0.01;
@@ -150,13 +158,15 @@ static struct scene few_discs(bool periodic)
   scene_add_disc(&scene, 2, 3, 20.4, low + 9)->velocity[1] = 0.2;
   scene_add_disc(&scene, 6, 1, 30, low + 20)->motion = DISC_FIXED;
   if (!periodic) scene.domain.side[SIDE_TOP].velocity[0] = 0.05;
+  if (outlet) scene.domain.side[SIDE_LEFT] = (struct side){SIDE_INLET, {0.03, 0}};
+  if (outlet) scene.domain.side[SIDE_RIGHT].type = SIDE_OUTLET;
   return scene;
 }
 
 /* Velocity along x and the discs' places after 200 steps. */
-static void run_few_discs(bool periodic, int depth, int threads, double *ux, double places[6])
+static void run_few_discs(bool periodic, bool outlet, int depth, int threads, double *ux, double places[6])
 {
-  struct scene scene = few_discs(periodic);
+  struct scene scene = few_discs(periodic, outlet);
   struct simulation *simulation;
   struct status status;
   scene.run.plan.depth = depth;
@@ -176,13 +186,14 @@ Test(blocked, rows_that_no_disc_can_reach_go_ahead_and_give_the_same_bits)
   static const int depths[] = {0, 2, 7, 20, 1000}, threads[] = {1, 2, 3};
   static double expected[CELLS], obtained[CELLS];
   double places[2][6];
-  for (int periodic = 0; periodic < 2; periodic++) {
-    run_few_discs(periodic, 1, 1, expected, places[0]);
+  for (int k = 0; k < 4; k++) {
+    const bool periodic = k % 2, outlet = k / 2;
+    run_few_discs(periodic, outlet, 1, 1, expected, places[0]);
     for (size_t d = 0; d < sizeof depths / sizeof depths[0]; d++)
       for (size_t t = 0; t < sizeof threads / sizeof threads[0]; t++) {
-        run_few_discs(periodic, depths[d], threads[t], obtained, places[1]);
+        run_few_discs(periodic, outlet, depths[d], threads[t], obtained, places[1]);
         cr_expect(!memcmp(expected, obtained, sizeof expected) && !memcmp(places[0], places[1], sizeof places[0]),
-                  "periodic %d, depth %d, threads %d", periodic, depths[d], threads[t]);
+                  "periodic %d, outlet %d, depth %d, threads %d", periodic, outlet, depths[d], threads[t]);
       }
   }
 }

@@ -1,0 +1,172 @@
+/* The sides of the box: what they let in and out, corners, outlets. */
+#include "drive.h"
+#include "scenes.h"
+
+#include <criterion/criterion.h>
+#include <math.h>
+#include <stdlib.h>
+
+static double excess_mass(struct simulation *simulation)
+{
+  const int *size = simulation_scene(simulation)->domain.size;
+  const size_t cells = (size_t)size[0] * (size_t)size[1];
+  double *rho = malloc(cells * sizeof *rho), sum = 0;
+  simulation_fields(simulation, rho, NULL, NULL);
+  for (size_t k = 0; k < cells; k++) sum += rho[k] - 1;
+  free(rho);
+  return sum;
+}
+
+/* No fluid leaves these boxes: their mass is what has come in. */
+Test(inlet, lets_in_its_velocity_times_its_length_to_round_off)
+{
+  enum { NX = 30, NY = 21, STEPS = 11 };
+  static const double slant[] = {0, 0.013, -0.008};
+  for (int k = 0; k < 3; k++)
+    for (int corner = 0; corner < 2; corner++) {
+      struct scene scene = scene_box(NX, NY, 0.05, SIDES_CLOSED);
+      scene.domain.side[SIDE_LEFT] = (struct side){SIDE_INLET, {0.02, slant[k]}};
+      if (corner) scene.domain.side[SIDE_TOP] = (struct side){SIDE_INLET, {slant[k], -0.03}};
+      scene.domain.side[SIDE_BOTTOM].velocity[0] = 0.04;
+      struct simulation *simulation = start(&scene);
+      advance(simulation, STEPS);
+      const double expected = STEPS * (0.02 * NY + (corner ? 0.03 * NX : 0)), entered = excess_mass(simulation);
+      cr_expect(fabs(entered / expected - 1) < 1e-13, "slant %g, inlets %d: %.17g of %.17g", slant[k], 1 + corner,
+                entered, expected);
+      simulation_destroy(simulation);
+      scene_clear(&scene);
+    }
+}
+
+Test(walls, that_run_into_a_corner_push_no_fluid_through_it)
+{
+  struct scene scene = scene_box(31, 24, 0.05, SIDES_CLOSED);
+  scene.domain.side[SIDE_TOP].velocity[0] = 0.1;
+  scene.domain.side[SIDE_RIGHT].velocity[1] = 0.07;
+  struct simulation *simulation = start(&scene);
+  advance(simulation, 301);
+  cr_expect_lt(fabs(excess_mass(simulation)), 1e-11);
+  simulation_destroy(simulation);
+  scene_clear(&scene);
+}
+
+static struct flow_state stream(const void *velocity, int x, int y)
+{
+  const double *v = velocity;
+  (void)x, (void)y;
+  return (struct flow_state){.density = 1, .velocity = {v[0], v[1]}};
+}
+
+Test(corners, keep_a_uniform_stream_uniform_to_round_off)
+{
+  enum { NX = 27, NY = 22 };
+  static const struct {
+    double velocity[2];
+    struct side side[SIDE_COUNT]; /* left, right, bottom, top */
+  } streams[] = {
+      {{0.05, 0}, {{SIDE_INLET, {0.05, 0}}, {SIDE_OUTLET, {0}}, {SIDE_WALL, {0.05, 0}}, {SIDE_WALL, {0.05, 0}}}},
+      {{-0.05, 0}, {{SIDE_OUTLET, {0}}, {SIDE_INLET, {-0.05, 0}}, {SIDE_WALL, {-0.05, 0}}, {SIDE_WALL, {-0.05, 0}}}},
+      {{0, 0.05}, {{SIDE_WALL, {0, 0.05}}, {SIDE_WALL, {0, 0.05}}, {SIDE_INLET, {0, 0.05}}, {SIDE_OUTLET, {0}}}},
+      {{0.05, 0}, {{SIDE_INLET, {0.05, 0}}, {SIDE_OUTLET, {0}}, {SIDE_OUTLET, {0}}, {SIDE_WALL, {0.05, 0}}}},
+      {{0.04, 0.02}, {{SIDE_INLET, {0.04, 0.02}}, {SIDE_OUTLET, {0}}, {SIDE_INLET, {0.04, 0.02}}, {SIDE_OUTLET, {0}}}},
+      {{0.04, 0.02}, {{SIDE_INLET, {0.04, 0.02}}, {SIDE_OUTLET, {0}}, {SIDE_OUTLET, {0}}, {SIDE_OUTLET, {0}}}},
+  };
+  double ux[NX * NY], uy[NX * NY], rho[NX * NY];
+  for (size_t s = 0; s < sizeof streams / sizeof streams[0]; s++) {
+    struct scene scene = scene_box(NX, NY, 0.05, SIDES_CLOSED);
+    for (int k = 0; k < SIDE_COUNT; k++) scene.domain.side[k] = streams[s].side[k];
+    struct simulation *simulation = start(&scene);
+    simulation_start(simulation, stream, streams[s].velocity);
+    for (int odd = 0; odd < 2; odd++) {
+      advance(simulation, odd ? 1 : 200);
+      double largest = 0;
+      simulation_fields(simulation, rho, ux, uy);
+      for (int k = 0; k < NX * NY; k++) {
+        largest = fmax(largest, fabs(rho[k] - 1));
+        largest = fmax(largest, fabs(ux[k] - streams[s].velocity[0]));
+        largest = fmax(largest, fabs(uy[k] - streams[s].velocity[1]));
+      }
+      cr_expect_lt(largest, 1e-13, "stream %zu, %s number of steps: differs by %g", s, odd ? "odd" : "even", largest);
+    }
+    simulation_destroy(simulation);
+    scene_clear(&scene);
+  }
+}
+
+Test(duct, what_enters_at_the_inlet_leaves_through_the_outlet)
+{
+  const int nx = 120, ny = 24;
+  struct scene scene = scene_box(nx, ny, 0.1, SIDES_CLOSED);
+  scene.domain.side[SIDE_LEFT] = (struct side){SIDE_INLET, {0.02, 0}};
+  scene.domain.side[SIDE_RIGHT].type = SIDE_OUTLET;
+  scene_use_magic(&scene);
+  struct simulation *simulation = start(&scene);
+  advance(simulation, 30000);
+  double *rho = malloc(sizeof(double) * nx * ny), *u = malloc(sizeof(double) * nx * ny);
+  simulation_fields(simulation, rho, u, NULL);
+  for (int x = 5; x < nx; x += 6) {
+    double flux = 0;
+    for (int y = 0; y < ny; y++) flux += rho[y * nx + x] * u[y * nx + x];
+    const double expected = 0.02 * ny;
+    cr_expect(fabs(flux / expected - 1) < 1e-6, "mass flux at %d: %.9g of %.9g", x, flux, expected);
+  }
+  /* far from the inlet, a parabola of this flux */
+  for (int y = 0; y < ny; y++) {
+    const double at = (y + 0.5) / ny, expected = 6 * at * (1 - at);
+    double flux = 0;
+    for (int k = 0; k < ny; k++) flux += u[k * nx + nx - 10];
+    const double obtained = u[y * nx + nx - 10] / (flux / ny);
+    cr_expect(fabs(obtained - expected) < 0.02, "y %d: %g, expected %g", y, obtained, expected);
+  }
+  free(rho);
+  free(u);
+  simulation_destroy(simulation);
+  scene_clear(&scene);
+}
+
+/* The inlet sets the fluid in motion by a wave that runs to the outlet. What the outlet returns of it, the inlet sends
+ * back, and so on: after four times there and back the velocity is uniform only if most of it has gone out. */
+Test(outlet, lets_out_the_sound_of_an_inlet_that_starts_at_once)
+{
+  const int nx = 400, ny = 3;
+  struct scene scene = scene_box(nx, ny, 0.01, SIDES_PERIODIC);
+  scene.domain.side[SIDE_LEFT] = (struct side){SIDE_INLET, {0.02, 0}};
+  scene.domain.side[SIDE_RIGHT].type = SIDE_OUTLET;
+  struct simulation *simulation = start(&scene);
+  advance(simulation, (int64_t)(8 * nx * sqrt(3)));
+  double *rho = malloc(sizeof(double) * nx * ny), *u = malloc(sizeof(double) * nx * ny);
+  simulation_fields(simulation, rho, u, NULL);
+  for (int x = 0; x < nx; x += 10) cr_expect(fabs(u[nx + x] / 0.02 - 1) < 0.02, "velocity at %d: %g", x, u[nx + x]);
+  for (int x = 0; x < nx; x += 10) cr_expect(fabs(rho[nx + x] - 1) < 0.002, "density at %d: %g", x, rho[nx + x]);
+  free(rho);
+  free(u);
+  simulation_destroy(simulation);
+  scene_clear(&scene);
+}
+
+static struct flow_state pulse(const void *middle, int x, int y)
+{
+  const double at = (x - *(const double *)middle) / 12, rise = 1e-4 * exp(-at * at);
+  (void)y;
+  return (struct flow_state){.density = 1 + rise, .velocity = {rise / sqrt(3), 0}};
+}
+
+/* A weak pulse that runs to the outlet through fluid at rest. Short against the box, it is reflected by the zero gradient
+ * alone: by 2 - sqrt(3) = 0.268 if long against a cell, and less otherwise. */
+Test(outlet, reflects_less_than_27_percent_of_a_short_pulse_of_sound)
+{
+  enum { NX = 500, NY = 4 };
+  const double middle = 350;
+  double rho[NX * NY], largest = 0;
+  struct scene scene = scene_box(NX, NY, 0.01, SIDES_PERIODIC);
+  scene.domain.side[SIDE_LEFT].type = SIDE_WALL;
+  scene.domain.side[SIDE_RIGHT].type = SIDE_OUTLET;
+  struct simulation *simulation = start(&scene);
+  simulation_start(simulation, pulse, &middle);
+  advance(simulation, (int64_t)(250 * sqrt(3))); /* to the outlet and 100 cells back */
+  simulation_fields(simulation, rho, NULL, NULL);
+  for (int x = 0; x < NX; x++) largest = fmax(largest, fabs(rho[NX + x] - 1) / 1e-4);
+  cr_expect(largest < 0.268, "reflected: %g", largest);
+  simulation_destroy(simulation);
+  scene_clear(&scene);
+}
