@@ -207,8 +207,7 @@ static void print_contacts(const struct scene *scene, const struct plan *plan)
 static void print_plan(const struct scene *scene)
 {
   if (!blocked_possible(scene))
-    printf("blocking     off: %s\n",
-           scene->fluid.zero_flux ? "zero_flux sums over the box each step" : "outlets read beyond their own rows");
+    printf("blocking     off: zero_flux sums over the box each step\n");
   else if (scene->particles.count > 0)
     printf("blocking     in time, %d steps deep, of rows that no disc can reach\n",
            scene->run.plan.depth > 0 ? scene->run.plan.depth : BLOCKED_AHEAD);
