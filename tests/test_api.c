@@ -4,6 +4,7 @@
 #include "delbm/delbm.h"
 
 #include <math.h>
+#include <omp.h>
 
 TestSuite(api, .timeout = 100 * SLOWNESS);
 TestSuite(installed, .init = shell_enter, .fini = shell_leave, .timeout = 170 * SLOWNESS);
@@ -284,6 +285,82 @@ Test(api, a_checkpoint_of_a_run_can_be_loaded)
   cr_expect_eq(delbm_time(b), 25);
   delbm_close(a);
   delbm_close(b);
+  shell_leave();
+}
+
+/* What the calls that step, change and store a simulation lead to. */
+struct outcome {
+  int wrong; /* calls that failed */
+  struct delbm_disc_state discs[MOST_DISCS];
+  double velocity[120 * 100];
+};
+
+/* Opens, steps, moves a disc, sets the fluid, saves at an odd step, loads into another simulation and goes on with that. */
+static void use_all_calls(const char *text, const char *path, struct outcome *outcome)
+{
+  static const double rest[120 * 100];
+  struct delbm_simulation *first, *second;
+  double *density = calloc(120 * 100, sizeof *density);
+  outcome->wrong = delbm_open_text(&first, text, NULL, 0, NULL) != DELBM_OK;
+  outcome->wrong += delbm_open_text(&second, text, NULL, 0, NULL) != DELBM_OK;
+  const size_t count = delbm_disc_count(first);
+  for (size_t k = 0; k < 120 * 100; k++) density[k] = 1 + 1e-3 * sin(0.1 * (double)k);
+  outcome->wrong += delbm_step(first, 20, NULL) != DELBM_OK;
+  outcome->wrong += delbm_write_fluid(first, density, rest, rest, NULL) != DELBM_OK;
+  outcome->wrong += delbm_read_discs(first, 0, count, outcome->discs, NULL) != DELBM_OK;
+  outcome->discs[0].position[0] += 2.5;
+  outcome->wrong += delbm_write_discs(first, 0, 1, outcome->discs, NULL) != DELBM_OK;
+  outcome->wrong += delbm_step(first, 31, NULL) != DELBM_OK;
+  outcome->wrong += delbm_save(first, path, NULL) != DELBM_OK;
+  outcome->wrong += delbm_load(second, path, NULL) != DELBM_OK;
+  outcome->wrong += delbm_step(second, 30, NULL) != DELBM_OK;
+  outcome->wrong += delbm_read_discs(second, 0, count, outcome->discs, NULL) != DELBM_OK;
+  outcome->wrong += delbm_read_field(second, DELBM_VELOCITY_X, outcome->velocity, NULL) != DELBM_OK;
+  delbm_close(first);
+  delbm_close(second);
+  free(density);
+}
+
+/* Inside of a parallel region of the caller, by one thread while the others wait, and by each for itself. */
+static void expect_same_in_a_region(const char *text)
+{
+  enum { THREADS = 3 };
+  struct outcome *reference = calloc(1, sizeof *reference), *one = calloc(1, sizeof *one);
+  struct outcome *each = calloc(THREADS, sizeof *each);
+  use_all_calls(text, "outside", reference);
+  cr_assert_eq(reference->wrong, 0);
+#pragma omp parallel num_threads(THREADS)
+  {
+    if (omp_get_thread_num() == THREADS - 1) use_all_calls(text, "one", one);
+#pragma omp barrier
+    char path[16];
+    snprintf(path, sizeof path, "each-%d", omp_get_thread_num());
+    use_all_calls(text, path, &each[omp_get_thread_num()]);
+  }
+  cr_expect_eq(memcmp(one, reference, sizeof *one), 0, "one thread of the region");
+  for (int k = 0; k < THREADS; k++) cr_expect_eq(memcmp(&each[k], reference, sizeof *each), 0, "thread %d of all", k);
+  free(reference);
+  free(one);
+  free(each);
+}
+
+static const char *const through_outlet =
+    "domain: {size: [120, 100], left: {type: inlet, velocity: [0.02, 0]}, right: outlet}\n"
+    "fluid: {viscosity: 0.03}\n"
+    "particles:\n"
+    "  density: 1.3\n"
+    "  discs: [{radius: 6, position: [30, 80]}, {radius: 7, position: [110, 30]}, {radius: 7, position: [110, 17.5]}]\n"
+    "contact: {search: linked-cell}\n";
+
+Test(api, in_a_parallel_region_of_the_host_gives_the_same_bits_as_outside)
+{
+  shell_enter();
+  omp_set_num_threads(2);
+  for (int levels = 1; levels <= 2; levels++) { /* with 1 the regions of the library have one thread each */
+    omp_set_max_active_levels(levels);
+    expect_same_in_a_region(crowd);
+    expect_same_in_a_region(through_outlet);
+  }
   shell_leave();
 }
 

@@ -2,7 +2,7 @@
 
 void team_fail(struct team *team, const struct status *status)
 {
-#pragma omp critical(team_fail)
+#pragma omp critical(delbm_team_fail)
   if (!team->failed) {
     team->first = *status;
     team->failed = true;

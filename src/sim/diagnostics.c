@@ -77,7 +77,7 @@ struct worst_cell diagnostics_worst(const struct populations *p, scan_row *scan)
       const double speed2 = scan(a, p->nx);
       if (worse(speed2, own)) own = speed2, own_row = y;
     }
-#pragma omp critical(diagnostics_worst)
+#pragma omp critical(delbm_worst_cell)
     if (worse(own, worst) || (!worse(worst, own) && own_row < row)) worst = own, row = own_row;
   }
   return worst_of_row(p, row);

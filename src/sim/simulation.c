@@ -61,18 +61,30 @@ static bool create_discs(struct simulation *s, struct status *status)
          contacts_create(&s->contacts, s->scene, &s->plan, &s->discs, status);
 }
 
-/* Occupation where the discs are. */
+/* Occupation where the discs are. A stage is shared out among the threads of the region around it, which must be of our
+ * own: the caller may be inside one, and only one of its threads may call. */
 static bool paint(struct simulation *s, struct status *status)
 {
-  if (s->plan.exchange) stage_occupation(present(s), &s->discs, &s->team);
+  if (s->plan.exchange) {
+#pragma omp parallel num_threads(threads_for(scene_cells(s->scene)))
+    stage_occupation(present(s), &s->discs, &s->team);
+  }
   if (s->team.failed) *status = s->team.first;
   return !s->team.failed;
+}
+
+/* The sums of the first exchange, in a region of our own like the above. */
+static void take_first_sums(struct simulation *s)
+{
+  if (!s->plan.exchange) return;
+#pragma omp parallel num_threads(threads_for(scene_cells(s->scene)))
+  stage_first_sums(&s->flow, present(s));
 }
 
 void simulation_start(struct simulation *s, flow_initial *initial, const void *context)
 {
   flow_start(&s->flow, initial, context, s->plan.exchange ? present(s) : NULL, &s->discs);
-  if (s->plan.exchange) stage_first_sums(&s->flow, present(s));
+  take_first_sums(s);
   conserved_momentum(s, s->initial_momentum);
 }
 
@@ -350,7 +362,7 @@ static bool check_places(const struct simulation *s, const struct store *store, 
 static bool follow_up(struct simulation *s, struct status *status)
 {
   if (!paint(s, status)) return false;
-  if (s->plan.exchange) stage_first_sums(&s->flow, present(s));
+  take_first_sums(s);
   return true;
 }
 
