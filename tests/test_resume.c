@@ -9,6 +9,7 @@
 
 #include <math.h>
 #include <omp.h>
+#include <zlib.h>
 
 /* A state as bytes. */
 struct saved {
@@ -202,6 +203,54 @@ Test(checkpoint, of_another_case_is_known_and_of_another_length_is_not)
   cr_expect_neq(first, second);
 }
 
+/* Puts a checksum right again, as fuzzing does. */
+static void put_sum_right(unsigned char *bytes, size_t size)
+{
+  const uint32_t sum = (uint32_t)crc32_z(0, bytes, size - sizeof sum);
+  memcpy(bytes + size - sizeof sum, &sum, sizeof sum);
+}
+
+/* Changes the step that a checkpoint's head tells; its checksum is right. */
+static void forge_step(const char *path, int64_t by)
+{
+  static unsigned char bytes[1 << 20];
+  struct checkpoint_head head;
+  FILE *file = fopen(path, "r+b");
+  cr_assert(file);
+  const size_t size = fread(bytes, 1, sizeof bytes, file);
+  cr_assert(size > sizeof head && size < sizeof bytes);
+  memcpy(&head, bytes, sizeof head);
+  head.step += by;
+  memcpy(bytes, &head, sizeof head);
+  put_sum_right(bytes, size);
+  rewind(file);
+  cr_assert(fwrite(bytes, 1, size, file) == size && fclose(file) == 0);
+}
+
+Test(checkpoint, whose_head_tells_another_step_than_its_state_is_refused_though_its_checksum_is_right)
+{
+  shell_enter();
+  struct scene scene = scene_box(40, 30, 0.05, SIDES_CLOSED);
+  const struct run_record record = {.seconds = 1};
+  struct run_record read;
+  struct checkpoint_head head;
+  struct status status;
+  struct simulation *simulation = start(&scene), *other = start(&scene);
+  advance(simulation, 7);
+  cr_assert(checkpoint_write("state", 1, simulation, &record, &status), "%s", status.message);
+  forge_step("state", 0);
+  cr_assert(checkpoint_examine("state", 1, &head, &status), "%s", status.message);
+  cr_expect(head.step == 7 && checkpoint_read("state", other, &read, &status), "%s", status.message);
+  forge_step("state", 1);
+  cr_assert(checkpoint_examine("state", 1, &head, &status), "%s", status.message);
+  cr_expect_not(checkpoint_read("state", other, &read, &status));
+  cr_expect(status.code == DELBM_IO && strcmp(status.message, "state: its state is of another step") == 0, "%s",
+            status.message);
+  simulation_destroy(simulation);
+  simulation_destroy(other);
+  shell_leave();
+}
+
 /* The rest is from outside. */
 TestSuite(resume, .init = shell_enter, .fini = shell_leave, .timeout = 120 * SLOWNESS);
 
@@ -277,9 +326,25 @@ Test(resume, after_signals_goes_on_and_their_exit_codes_differ)
                      "grep -q '\"status\": \"interrupted\"' cut/run.json"),
                0);
   cr_expect_eq(stop("TERM", "resume cut"), 143);
+  cr_expect_eq(stop("HUP", "resume cut"), 129);
   cr_expect_eq(shell("$DELBM resume cut >out 2>err && grep -q 'resuming cut at step' err && grep -q steps=1501 out"),
                0);
   cr_expect_eq(shell("%s", compare), 0);
+}
+
+Test(resume, after_a_terminal_has_closed_goes_on_however_often_it_says_so)
+{
+  shell_write("crowd.yaml", crowd);
+  cr_expect_eq(stop("HUP $p; kill -HUP $p 2>/dev/null; kill -HUP", "run crowd.yaml --out cut"), 129);
+  cr_expect_eq(shell("grep -q 'interrupted at step' err && $DELBM resume cut --quiet >/dev/null"), 0);
+}
+
+Test(resume, is_not_needed_under_nohup)
+{
+  shell_write("crowd.yaml", crowd);
+  setenv("DELBM", "nohup " DELBM, 1);
+  cr_expect_eq(stop("HUP", "run crowd.yaml --out cut"), 0);
+  cr_expect_eq(shell("grep -q 'status=done steps=1501' out"), 0);
 }
 
 Test(resume, without_regular_checkpoints_leaves_none_behind)

@@ -11,6 +11,7 @@ enum delbm_code {
   DELBM_USAGE = 2,         /* the command line was not understood, or a call had an argument that it must not have */
   DELBM_INVALID = 3,       /* the case is not valid */
   DELBM_IO = 4,            /* reading or writing a file failed */
+  DELBM_HUNG_UP = 129,     /* by SIGHUP, after a checkpoint */
   DELBM_INTERRUPTED = 130, /* by SIGINT, after a checkpoint */
   DELBM_TERMINATED = 143   /* by SIGTERM, after a checkpoint */
 };

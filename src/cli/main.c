@@ -22,7 +22,7 @@ static int print_help(void)
   puts("\n"
        "The number of threads is that of OMP_NUM_THREADS; it does not change results.\n"
        "Exit codes: 0 done, 1 run failed (diverged), 2 usage, 3 invalid case, 4 input/output,\n"
-       "130 or 143 interrupted by SIGINT or SIGTERM.");
+       "129, 130 or 143 interrupted by SIGHUP, SIGINT or SIGTERM, after a checkpoint.");
   return DELBM_OK;
 }
 

@@ -32,8 +32,8 @@ static void print_help(void)
        "  --quiet          no progress on stderr, only errors\n"
        "  --help           this text\n"
        "\n"
-       "A run checkpoints when it is interrupted (Ctrl-C, SIGTERM) and every output.checkpoint.every steps. Two\n"
-       "checkpoints alternate; one that is damaged or of another case is refused, and the other used.");
+       "A run checkpoints when it is interrupted (Ctrl-C, SIGTERM, SIGHUP) and every output.checkpoint.every\n"
+       "steps. Two checkpoints alternate; one that is damaged or of another case is refused, and the other used.");
 }
 
 static void report_choice(const struct resumption *resumption, const struct session *session)

@@ -42,8 +42,8 @@ static void print_help(void)
        "  --help-keys      every key of a case, what it means and what it may be\n"
        "\n"
        "DIR receives case.yaml (the case as run), particles.csv, fields.h5, frames/*.png and run.json. The last line\n"
-       "on stdout has the figures of run.json. An interrupt (Ctrl-C, SIGTERM) ends the run after a checkpoint,\n"
-       "from which `delbm resume DIR` goes on.");
+       "on stdout has the figures of run.json. An interrupt (Ctrl-C, SIGTERM, SIGHUP) ends the run after a\n"
+       "checkpoint, from which `delbm resume DIR` goes on.");
 }
 
 /* How far reading the command line got: run the case, or leave with an exit code. */

@@ -19,18 +19,28 @@ struct run {
   struct status status;
 };
 
+/* The first of several decides the exit code. */
 static void request_stop(int signal_number)
 {
-  stop_requested = signal_number;
+  if (!stop_requested) stop_requested = signal_number;
 }
 
-/* The first signal asks the run to end in order, the second ends the program. */
+/* The first signal asks the run to end in order, a second of its kind ends the program: but for SIGHUP, which a terminal that
+ * closes may send twice, once itself and once by its shell. Where SIGHUP is ignored (nohup) it stays so. */
 static void listen_to_signals(void)
 {
-  struct sigaction action = {.sa_handler = request_stop, .sa_flags = (int)SA_RESETHAND | SA_RESTART};
+  struct sigaction action = {.sa_handler = request_stop, .sa_flags = (int)SA_RESETHAND | SA_RESTART}, before;
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, NULL);
   sigaction(SIGTERM, &action, NULL);
+  action.sa_flags = SA_RESTART;
+  if (sigaction(SIGHUP, NULL, &before) == 0 && before.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, NULL);
+}
+
+/* 128 + n for signal n, as a shell has it for a program that a signal has ended. */
+static enum delbm_code code_of_signal(int signal_number)
+{
+  return signal_number == SIGHUP ? DELBM_HUNG_UP : signal_number == SIGTERM ? DELBM_TERMINATED : DELBM_INTERRUPTED;
 }
 
 /* Tells a diverged simulation from a full disk or memory. */
@@ -62,7 +72,7 @@ static bool interrupt(struct run *run)
 {
   if (!recorder_checkpoint(run->recorder, run->simulation, &run->status)) return fail(run);
   run->outcome = OUTCOME_INTERRUPTED;
-  return status_fail(&run->status, stop_requested == SIGTERM ? DELBM_TERMINATED : DELBM_INTERRUPTED,
+  return status_fail(&run->status, code_of_signal(stop_requested),
                      "interrupted at step %" PRId64 " of %" PRId64 "; `delbm resume %s` goes on from there",
                      simulation_step(run->simulation), run->scene->run.steps, run->directory);
 }

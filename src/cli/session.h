@@ -12,7 +12,7 @@ struct session {
   bool quiet;
 };
 
-/* Runs to the end of the scene, from the simulation's present step. SIGINT and SIGTERM end it after a checkpoint.
+/* Runs to the end of the scene, from the simulation's present step. SIGINT, SIGTERM and SIGHUP end it after a checkpoint.
  * Returns the exit code; what went wrong has been reported. */
 int session_run(const struct session *session);
 
