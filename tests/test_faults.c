@@ -87,6 +87,109 @@ Test(faults, a_missing_folder_or_case_is_named)
   cr_expect_eq(shell("grep -q '^delbm: nothing to resume: bare holds no checkpoint$' err"), 0);
 }
 
+/* Starts a run without end, does something to its folder once there are rows, and returns the run's exit code. */
+static int disturb(const char *what)
+{
+  return shell("$DELBM run pair.yaml --quiet --out cut --set run.steps=100000000 %s >out 2>err & p=$!; "
+               "while kill -0 $p && test $(cat cut/particles.csv 2>/dev/null | wc -l) -le 300; do sleep 0.01; done; "
+               "%s; wait $p",
+#ifdef DELBM_PNG
+               "--set output.frames.every=50",
+#else
+               "",
+#endif
+               what);
+}
+
+Test(faults, a_folder_that_is_removed_moved_or_replaced_ends_the_run)
+{
+  static const char *const what[] = {"until rm -rf cut 2>/dev/null; do :; done", "mv cut moved",
+                                     "mv cut moved; mkdir cut", "mv cut moved; ln -s moved other; ln -s nowhere cut"};
+  for (size_t k = 0; k < sizeof what / sizeof what[0]; k++) {
+    cr_expect_eq(disturb(what[k]), 4, "%s", what[k]);
+    cr_expect_eq(shell("grep -q '^delbm: cannot go on in cut: it was removed, moved or replaced while the run' err && "
+                       "grep -q status=failed out && ! ls cut/* 2>/dev/null"),
+                 0, "%s", what[k]);
+    cr_assert_eq(shell("rm -rf cut moved"), 0);
+  }
+}
+
+Test(faults, a_table_that_is_removed_or_replaced_ends_the_run)
+{
+  cr_expect_eq(disturb("rm cut/particles.csv"), 4);
+  cr_expect_eq(shell("grep -q '^delbm: cannot go on in cut/particles.csv: it was removed' err"), 0);
+  cr_expect_eq(disturb("mv cut/particles.csv old; echo hello >cut/particles.csv"), 4);
+  cr_expect_eq(shell("grep -q '^delbm: cannot go on in cut/particles.csv: it was removed' err && "
+                     "test $(cat cut/particles.csv) = hello && grep -q '\"status\": \"failed\"' cut/run.json"),
+               0);
+}
+
+#ifdef DELBM_PNG
+Test(faults, a_folder_of_frames_that_is_removed_ends_the_run)
+{
+  cr_expect_eq(disturb("mv cut/frames gone"), 4);
+  cr_expect_eq(
+      shell("grep -qE '^delbm: cannot (create|write) cut/frames/[0-9]+.png(.tmp)?: No such file or directory$' err"),
+      0);
+}
+#endif
+
+/* What a run in the folder `cut` writes. */
+static const char *const short_run = "run pair.yaml --quiet --out cut --set run.steps=300"
+#ifdef DELBM_PNG
+                                     " --set output.frames.every=100"
+#endif
+#ifdef DELBM_HDF5
+                                     " --set output.fields.every=100"
+#endif
+    ;
+
+/* Each name that a run writes, and each with .tmp behind it, leads to a file outside. */
+Test(faults, links_and_fifos_of_a_files_name_are_replaced_and_what_they_lead_to_stays)
+{
+  static const char *const plant[] = {"ln -s \"$PWD/precious\"", "ln precious", "mkfifo"};
+  cr_assert_eq(shell("$DELBM %s >/dev/null && mv cut whole && echo precious >precious", short_run), 0);
+  for (size_t k = 0; k < sizeof plant / sizeof plant[0]; k++) {
+    cr_assert_eq(shell("rm -rf cut; mkdir -p cut/frames; (cd whole; find . -type f) >names; "
+                       "while read -r n; do %s \"cut/$n.tmp\"; done <names",
+                       plant[k]),
+                 0);
+    cr_expect_eq(shell("timeout 20 $DELBM %s >out 2>err", short_run), 0, "%s", plant[k]);
+    cr_expect_eq(shell("test \"$(cat precious)\" = precious && cmp whole/particles.csv cut/particles.csv && "
+                       "cmp whole/case.yaml cut/case.yaml"),
+                 0, "%s", plant[k]);
+    cr_assert_eq(shell("rm -rf cut; mkdir -p cut/frames; "
+                       "grep -v -e case -e frames -e json names | while read -r n; do %s \"cut/$n\"; done",
+                       plant[k]),
+                 0);
+    cr_expect_eq(shell("timeout 20 $DELBM %s >out 2>err", short_run), 0, "%s", plant[k]);
+    cr_expect_eq(shell("test \"$(cat precious)\" = precious && cmp whole/particles.csv cut/particles.csv && "
+                       "test -z \"$(find cut -type l -o -type p)\""),
+                 0, "%s", plant[k]);
+  }
+}
+
+Test(faults, links_and_fifos_are_not_gone_on_with)
+{
+  cr_assert_eq(shell("$DELBM %s >/dev/null && mv cut whole", short_run), 0);
+  cr_expect_eq(shell("cp -al whole cut && timeout 20 $DELBM resume cut --steps 400 2>err"), 4);
+  cr_expect_eq(shell("grep -q '^delbm: cannot go on with cut/particles.csv: the file has 2 names (hard links)' err && "
+                     "cmp whole/particles.csv cut/particles.csv"),
+               0);
+  cr_expect_eq(shell("rm -rf cut; cp -r whole cut; mv cut/particles.csv table; ln -s ../table cut/particles.csv; "
+                     "timeout 20 $DELBM resume cut --steps 400 2>err"),
+               4);
+  cr_expect_eq(shell("grep -q '^delbm: cannot go on with cut/particles.csv: it is a symbolic link' err && "
+                     "cmp whole/particles.csv table"),
+               0);
+  cr_expect_eq(shell("rm cut/particles.csv; mkfifo cut/particles.csv; timeout 20 $DELBM resume cut --steps 400 2>err"),
+               4);
+  cr_expect_eq(shell("rm -rf cut; cp -r whole cut; rm cut/checkpoint.0; mkfifo cut/checkpoint.0; "
+                     "timeout 20 $DELBM resume cut --steps 400 --quiet >out 2>err"),
+               0);
+  cr_expect_eq(shell("grep -q 'refused checkpoint cannot open cut/checkpoint.0: it is not a plain file' err"), 0);
+}
+
 Test(faults, stdout_closed_full_or_broken_fails_after_the_run)
 {
   cr_expect_eq(shell("$DELBM run silent.yaml --quiet --out closed >&- 2>err"), 4);

@@ -83,25 +83,62 @@ static bool check_sum(FILE *stream, const char *path, const struct checkpoint_he
          refuse(status, path, "damaged or incomplete: its checksum does not match");
 }
 
+static FILE *open_checkpoint(const char *path, struct status *status)
+{
+  FILE *stream = file_open_stream(path, status);
+  if (stream) setvbuf(stream, NULL, _IOFBF, BUFFER);
+  return stream;
+}
+
+static bool examine(FILE *stream, const char *path, uint32_t fingerprint, struct checkpoint_head *head,
+                    struct status *status)
+{
+  return (fread(head, sizeof *head, 1, stream) == 1 || refuse(status, path, "not a checkpoint of delbm")) &&
+         check_head(path, head, fingerprint, status) && check_sum(stream, path, head, status);
+}
+
 bool checkpoint_examine(const char *path, uint32_t fingerprint, struct checkpoint_head *head, struct status *status)
 {
-  FILE *stream = fopen(path, "rb");
-  if (!stream) return file_fail(status, "open", path, errno);
-  bool good = fread(head, sizeof *head, 1, stream) == 1 || refuse(status, path, "not a checkpoint of delbm");
-  good = good && check_head(path, head, fingerprint, status) && check_sum(stream, path, head, status);
+  FILE *stream = open_checkpoint(path, status);
+  if (!stream) return false;
+  const bool good = examine(stream, path, fingerprint, head, status);
   fclose(stream);
   return good;
 }
 
-bool checkpoint_read(const char *path, struct simulation *simulation, struct run_record *record, struct status *status)
+static bool restore(FILE *stream, const char *path, struct simulation *simulation, struct run_record *record,
+                    struct status *status)
 {
-  FILE *stream = fopen(path, "rb");
-  if (!stream) return file_fail(status, "open", path, errno);
-  setvbuf(stream, NULL, _IOFBF, BUFFER);
   struct checkpoint_head head;
   struct store store = {.stream = stream, .path = path};
-  const bool restored = store_bytes(&store, &head, sizeof head, status) &&
-                        simulation_restore(simulation, &store, status) && store_record(record, &store, status);
+  return store_bytes(&store, &head, sizeof head, status) && simulation_restore(simulation, &store, status) &&
+         store_record(record, &store, status) &&
+         (simulation_step(simulation) == head.step || refuse(status, path, "its state is of another step"));
+}
+
+bool checkpoint_read(const char *path, struct simulation *simulation, struct run_record *record, struct status *status)
+{
+  FILE *stream = open_checkpoint(path, status);
+  if (!stream) return false;
+  const bool restored = restore(stream, path, simulation, record, status);
   fclose(stream);
-  return restored && (simulation_step(simulation) == head.step || refuse(status, path, "its state is of another step"));
+  return restored;
+}
+
+bool checkpoint_load(const char *path, uint32_t fingerprint, struct simulation *simulation, bool *lost,
+                     struct status *status)
+{
+  struct checkpoint_head head;
+  struct run_record record;
+  if (!simulation_usable(simulation, status)) return false;
+  FILE *stream = open_checkpoint(path, status);
+  if (!stream) return false;
+  bool loaded = examine(stream, path, fingerprint, &head, status);
+  if (loaded) {
+    rewind(stream);
+    loaded = restore(stream, path, simulation, &record, status);
+    *lost = !loaded;
+  }
+  fclose(stream);
+  return loaded;
 }

@@ -39,4 +39,9 @@ bool checkpoint_examine(const char *path, uint32_t fingerprint, struct checkpoin
 /* Restores from a file that checkpoint_examine has found good, into a simulation of that case. */
 bool checkpoint_read(const char *path, struct simulation *simulation, struct run_record *record, struct status *status);
 
+/* Both, of one file: another that takes its name in between is not looked at. *lost becomes true if it fails after the state
+ * of the simulation has been touched. */
+bool checkpoint_load(const char *path, uint32_t fingerprint, struct simulation *simulation, bool *lost,
+                     struct status *status);
+
 #endif

@@ -124,14 +124,14 @@ static bool write_header(struct csv *csv, struct status *status)
   return write_text(csv, status);
 }
 
-/* Opens the file with what is in it. */
-static bool open_file(struct csv **csv, const char *path, const struct units *units, int flags, struct status *status)
+/* Opens the file anew, or with what is in it. */
+static bool open_file(struct csv **csv, const char *path, const struct units *units, bool anew, struct status *status)
 {
   *csv = memory_allocate(1, sizeof **csv, "the table of discs", status);
   if (!*csv) return false;
-  (*csv)->descriptor = open(path, O_WRONLY | O_APPEND | O_CLOEXEC | flags, 0666);
+  const int flags = O_WRONLY | O_APPEND;
+  (*csv)->descriptor = anew ? file_create(path, flags, status) : file_reopen(path, flags, status);
   if ((*csv)->descriptor < 0) {
-    file_fail(status, flags & O_CREAT ? "create" : "open", path, errno);
     free(*csv);
     *csv = NULL;
     return false;
@@ -150,7 +150,7 @@ static bool close_unless(bool good, struct csv **csv)
 
 bool csv_open(struct csv **csv, const char *path, const struct units *units, struct status *status)
 {
-  return close_unless(open_file(csv, path, units, O_CREAT | O_TRUNC, status) && write_header(*csv, status), csv);
+  return close_unless(open_file(csv, path, units, true, status) && write_header(*csv, status), csv);
 }
 
 /* Cuts the file to a length that it must have. */
@@ -163,7 +163,7 @@ static bool cut_back(struct csv *csv, int64_t length, struct status *status)
 
 bool csv_reopen(struct csv **csv, const char *path, const struct units *units, int64_t length, struct status *status)
 {
-  return close_unless(open_file(csv, path, units, 0, status) && cut_back(*csv, length, status), csv);
+  return close_unless(open_file(csv, path, units, false, status) && cut_back(*csv, length, status), csv);
 }
 
 bool csv_sync(struct csv *csv, int64_t *length, struct status *status)
@@ -214,6 +214,7 @@ static bool append_row(struct csv *csv, int64_t step, const struct discs *discs,
 
 bool csv_write(struct csv *csv, int64_t step, const struct discs *discs, struct status *status)
 {
+  if (!file_stays(csv->descriptor, csv->path, status)) return false;
   csv->length = 0;
   for (size_t disc = 0; disc < discs->count; disc++) {
     if (!reserve_row(csv, status)) return false;

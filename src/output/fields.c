@@ -279,7 +279,8 @@ bool fields_write(struct fields *f, struct simulation *simulation, struct status
   struct hdf5_file open;
   const int64_t step = simulation_step(simulation);
   const bool first = f->file.length == 0;
-  if (!simulation_sample(simulation, &f->grid, &f->sample, status) ||
+  if (!file_stays(f->file.descriptor, f->path, status) ||
+      !simulation_sample(simulation, &f->grid, &f->sample, status) ||
       !points_take(&f->points, f->scene, simulation_discs(simulation), status) || !hdf5_open(&open, &f->file, status))
     return false;
   const bool written = write_snapshot(f, open.handle, step, first);

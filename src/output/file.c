@@ -71,14 +71,100 @@ bool file_remove(const char *path, struct status *status)
   return unlink(path) == 0 || errno == ENOENT || file_fail(status, "remove", path, errno);
 }
 
+static bool is_device(const struct stat *found)
+{
+  return S_ISCHR(found->st_mode) || S_ISBLK(found->st_mode);
+}
+
+int file_create(const char *path, int flags, struct status *status)
+{
+  struct stat found;
+  const bool exists = lstat(path, &found) == 0, device = exists && is_device(&found);
+  if (exists && !device && !file_remove(path, status)) return -1;
+  const int descriptor = open(path, flags | O_CLOEXEC | (device ? 0 : O_CREAT | O_EXCL), 0666);
+  if (descriptor < 0) file_fail(status, "create", path, errno);
+  return descriptor;
+}
+
+FILE *file_create_stream(const char *path, struct status *status)
+{
+  const int descriptor = file_create(path, O_WRONLY, status);
+  if (descriptor < 0) return NULL;
+  FILE *stream = fdopen(descriptor, "wb");
+  if (stream) return stream;
+  file_fail(status, "create", path, errno);
+  close(descriptor);
+  unlink(path);
+  return NULL;
+}
+
+/* False unless this is a file with bytes of its own, and without `shared` of no other name. */
+static bool check_plain(int descriptor, const char *path, bool shared, struct status *status)
+{
+  struct stat found;
+  if (fstat(descriptor, &found) != 0) return file_fail(status, "open", path, errno);
+  if (!S_ISREG(found.st_mode)) return status_fail(status, DELBM_IO, "cannot open %s: it is not a plain file", path);
+  if (shared || found.st_nlink <= 1) return true;
+  return status_fail(status, DELBM_IO,
+                     "cannot go on with %s: the file has %ju names (hard links), and would change under all of them; "
+                     "put a copy in its place",
+                     path, (uintmax_t)found.st_nlink);
+}
+
+/* Without O_NONBLOCK a FIFO would be waited for. */
+static int open_plain(const char *path, int flags, bool shared, struct status *status)
+{
+  const int descriptor = open(path, flags | O_NONBLOCK | O_CLOEXEC);
+  if (descriptor < 0 && errno == ELOOP && (flags & O_NOFOLLOW) != 0)
+    status_fail(status, DELBM_IO, "cannot go on with %s: it is a symbolic link; put the file itself in its place",
+                path);
+  else if (descriptor < 0)
+    file_fail(status, "open", path, errno);
+  if (descriptor < 0 || check_plain(descriptor, path, shared, status)) return descriptor;
+  close(descriptor);
+  return -1;
+}
+
+int file_reopen(const char *path, int flags, struct status *status)
+{
+  return open_plain(path, flags | O_NOFOLLOW, false, status);
+}
+
+FILE *file_open_stream(const char *path, struct status *status)
+{
+  const int descriptor = open_plain(path, O_RDONLY, true, status);
+  if (descriptor < 0) return NULL;
+  FILE *stream = fdopen(descriptor, "rb");
+  if (stream) return stream;
+  file_fail(status, "open", path, errno);
+  close(descriptor);
+  return NULL;
+}
+
+bool file_stays(int descriptor, const char *path, struct status *status)
+{
+  struct stat opened, found;
+  if (fstat(descriptor, &opened) != 0) return file_fail(status, "write", path, errno);
+  if (stat(path, &found) == 0 && found.st_dev == opened.st_dev && found.st_ino == opened.st_ino) return true;
+  return status_fail(status, DELBM_IO,
+                     "cannot go on in %s: it was removed, moved or replaced while the run wrote there", path);
+}
+
+/* A device, also one that a link leads to, stays what it is: /dev/null, /dev/stdout. */
+static bool check_replaceable(const char *path, struct status *status)
+{
+  struct stat found;
+  return stat(path, &found) != 0 || !is_device(&found) ||
+         status_fail(status, DELBM_IO, "cannot write %s: it is a device, not a file", path);
+}
+
 bool replacement_begin(struct replacement *file, const char *path, struct status *status)
 {
-  *file = (struct replacement){.path = concatenate(path, "", "", status)};
+  *file = (struct replacement){0};
+  if (!check_replaceable(path, status)) return false;
+  file->path = concatenate(path, "", "", status);
   if (file->path) file->temporary = concatenate(path, ".tmp", "", status);
-  if (file->temporary) {
-    file->stream = fopen(file->temporary, "wb");
-    if (!file->stream) file_fail(status, "create", file->temporary, errno);
-  }
+  if (file->temporary) file->stream = file_create_stream(file->temporary, status);
   if (file->stream) return true;
   free(file->temporary);
   free(file->path);
@@ -87,8 +173,9 @@ bool replacement_begin(struct replacement *file, const char *path, struct status
 
 bool file_sync(int descriptor, const char *path, struct status *status)
 {
-  /* EINVAL: what cannot be synchronised (a pipe, a device) has nothing to lose */
-  return fsync(descriptor) == 0 || errno == EINVAL || file_fail(status, "write", path, errno);
+  while (fsync(descriptor) != 0) /* EINVAL: what cannot be synchronised (a pipe, a device) has nothing to lose */
+    if (errno != EINTR) return errno == EINVAL || file_fail(status, "write", path, errno);
+  return true;
 }
 
 static bool sync_directory(const char *path, struct status *status)

@@ -7,7 +7,8 @@
 #include <stdint.h>
 #include <stdio.h>
 
-/* A file written beside its final place and moved there once complete, so that no reader ever sees half of it. */
+/* A file written beside its final place, as NAME.tmp, and moved there once complete, so that no reader ever sees half of
+ * it. A link of either name is replaced, and not followed. */
 struct replacement {
   FILE *stream;
   char *path;
@@ -34,6 +35,20 @@ bool file_reaches(int descriptor, const char *path, int64_t length, struct statu
 
 /* Removes a file. One that does not exist is fine. */
 bool file_remove(const char *path, struct status *status);
+
+/* Opens a new file of that name, with the given O_ flags. What had the name is removed, be it a link or a FIFO, and not
+ * written to; only a device is opened as it is. -1 on failure. The second does it for a stream; NULL on failure. */
+int file_create(const char *path, int flags, struct status *status);
+FILE *file_create_stream(const char *path, struct status *status);
+
+/* Opens a file of a run that goes on, to write in it: a plain file, no link, of that name alone. -1 on failure. */
+int file_reopen(const char *path, int flags, struct status *status);
+
+/* Opens a plain file, or a link to one, for reading: no FIFO, which would be waited for. NULL on failure. */
+FILE *file_open_stream(const char *path, struct status *status);
+
+/* False unless the path still leads to the file or folder that is open: else what is written would be lost. */
+bool file_stays(int descriptor, const char *path, struct status *status);
 
 /* Between begin and commit the caller writes to file->stream, whose error flag commit checks. Either of commit and
  * abandon ends the replacement; after a failed commit the file that was there before still stands. */

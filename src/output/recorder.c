@@ -316,6 +316,7 @@ static bool record_frame(struct recorder *recorder, struct simulation *simulatio
 static bool write_checkpoint(struct recorder *recorder, struct simulation *simulation, struct status *status)
 {
   struct run_record record = {.seconds = recorder_elapsed(recorder), .output = recorder->seconds};
+  if (!file_stays(recorder->lock, recorder->directory, status)) return false;
   if (recorder->table && !csv_sync(recorder->table, &record.table_bytes, status)) return false;
   if (recorder->fields && !fields_set_mark(recorder->fields, &record.fields, status)) return false;
   if (!checkpoint_write(recorder->checkpoint_path[recorder->next_checkpoint], recorder->fingerprint, simulation,
@@ -326,13 +327,22 @@ static bool write_checkpoint(struct recorder *recorder, struct simulation *simul
   return true;
 }
 
+/* What fails in a folder that has gone fails for that reason, whatever the system's words are. */
+static bool explain(const struct recorder *recorder, bool good, struct status *status)
+{
+  struct status other;
+  if (good || status->code != DELBM_IO) return good;
+  if (!file_stays(recorder->lock, recorder->directory, &other)) *status = other;
+  return false;
+}
+
 bool recorder_checkpoint(struct recorder *recorder, struct simulation *simulation, struct status *status)
 {
   if (recorder->checkpoints.recorded == simulation_step(simulation)) return true;
   const double start = clock_now();
   const bool written = write_checkpoint(recorder, simulation, status);
   recorder->seconds += clock_now() - start;
-  return written;
+  return explain(recorder, written, status);
 }
 
 static bool record_due(struct recorder *recorder, struct simulation *simulation, bool last, struct status *status)
@@ -343,6 +353,7 @@ static bool record_due(struct recorder *recorder, struct simulation *simulation,
   bool rows = series_is_due(&recorder->rows, step, last), frame = series_is_due(&recorder->frames, step, last);
   bool snapshot = series_is_due(&recorder->snapshots, step, last);
   if (!rows && !frame && !snapshot && !last) return true;
+  if (!file_stays(recorder->lock, recorder->directory, status)) return false;
   /* a table refuses what is not finite by itself; a look at all cells costs more than its rows */
   if ((frame || snapshot || last) && !simulation_check(simulation, status)) return false;
   if (rows && !csv_write(recorder->table, step, simulation_discs(simulation), status)) return false;
@@ -360,7 +371,7 @@ bool recorder_record(struct recorder *recorder, struct simulation *simulation, b
   double start = clock_now();
   bool recorded = record_due(recorder, simulation, last, status);
   recorder->seconds += clock_now() - start;
-  return recorded;
+  return explain(recorder, recorded, status);
 }
 
 bool recorder_finish(struct recorder *recorder, struct status *status)
@@ -372,7 +383,8 @@ bool recorder_finish(struct recorder *recorder, struct status *status)
 
 bool recorder_summarise(const struct recorder *recorder, const struct summary *summary, struct status *status)
 {
-  return summary_write(summary, recorder->summary_path, status);
+  return file_stays(recorder->lock, recorder->directory, status) &&
+         summary_write(summary, recorder->summary_path, status);
 }
 
 double recorder_elapsed(const struct recorder *recorder)

@@ -37,17 +37,18 @@ static int write_at(int descriptor, const void *from, size_t size, int64_t at)
   return 0;
 }
 
-static bool open_file(struct reversible *f, const char *path, const char *undo_path, int flags, struct status *status)
+static bool open_file(struct reversible *f, const char *path, const char *undo_path, bool anew, struct status *status)
 {
   *f = (struct reversible){.path = path, .undo_path = undo_path, .descriptor = -1, .undo = -1};
-  f->descriptor = open(path, O_RDWR | O_CREAT | O_CLOEXEC | flags, 0666);
-  return f->descriptor >= 0 || file_fail(status, "open", path, errno);
+  f->descriptor = anew ? file_create(path, O_RDWR, status) : file_reopen(path, O_RDWR, status);
+  return f->descriptor >= 0;
 }
 
-static bool open_undo(struct reversible *f, int flags, struct status *status)
+static bool open_undo(struct reversible *f, bool anew, struct status *status)
 {
-  f->undo = open(f->undo_path, O_RDWR | O_DSYNC | O_CLOEXEC | flags, 0666);
-  return f->undo >= 0 || file_fail(status, "open", f->undo_path, errno);
+  const int flags = O_RDWR | O_DSYNC;
+  f->undo = anew ? file_create(f->undo_path, flags, status) : file_reopen(f->undo_path, flags, status);
+  return f->undo >= 0;
 }
 
 void reversible_close(struct reversible *f)
@@ -67,7 +68,7 @@ static bool close_unless(bool good, struct reversible *f)
 
 bool reversible_create(struct reversible *f, const char *path, const char *undo_path, struct status *status)
 {
-  return close_unless(open_file(f, path, undo_path, O_TRUNC, status), f);
+  return close_unless(open_file(f, path, undo_path, true, status), f);
 }
 
 /* Puts back the pages of whole records from `start` on, the last first: of each page the oldest stays. */
@@ -111,7 +112,8 @@ static bool take_back(struct reversible *f, const struct reversible_mark *mark, 
 bool reversible_return(struct reversible *f, const char *path, const char *undo_path,
                        const struct reversible_mark *mark, struct status *status)
 {
-  const bool taken = open_file(f, path, undo_path, 0, status) && open_undo(f, 0, status) && take_back(f, mark, status);
+  const bool taken =
+      open_file(f, path, undo_path, false, status) && open_undo(f, false, status) && take_back(f, mark, status);
   return close_unless(taken, f);
 }
 
@@ -165,7 +167,7 @@ int reversible_set_length(struct reversible *f, int64_t length)
 
 bool reversible_set_mark(struct reversible *f, struct reversible_mark *mark, struct status *status)
 {
-  if (f->undo < 0 && !open_undo(f, O_CREAT | O_TRUNC, status)) return false;
+  if (f->undo < 0 && !open_undo(f, true, status)) return false;
   if (!file_sync(f->descriptor, f->path, status)) return false;
   *mark = (struct reversible_mark){f->length, f->undo_length};
   return note_mark(f, mark, status);

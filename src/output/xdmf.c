@@ -90,8 +90,8 @@ static bool flushed(struct xdmf *xdmf, struct status *status)
 
 bool xdmf_open(struct xdmf *xdmf, const char *path, const struct sample_grid *grid, struct status *status)
 {
-  *xdmf = (struct xdmf){.path = path, .grid = *grid, .stream = fopen(path, "wb")};
-  if (!xdmf->stream) return file_fail(status, "create", path, errno);
+  *xdmf = (struct xdmf){.path = path, .grid = *grid, .stream = file_create_stream(path, status)};
+  if (!xdmf->stream) return false;
   setvbuf(xdmf->stream, NULL, _IOFBF, BUFFER);
   fputs(head, xdmf->stream);
   fputs(tail, xdmf->stream);
@@ -101,6 +101,7 @@ bool xdmf_open(struct xdmf *xdmf, const char *path, const struct sample_grid *gr
 bool xdmf_add(struct xdmf *xdmf, int64_t step, size_t points, struct status *status)
 {
   FILE *file = xdmf->stream;
+  if (!file_stays(fileno(file), xdmf->path, status)) return false;
   if (fseek(file, -(long)(sizeof tail - 1), SEEK_END) != 0) return file_fail(status, "write", xdmf->path, errno);
   fprintf(file,
           "<Grid Name=\"step %" PRId64 "\" GridType=\"Collection\" CollectionType=\"Spatial\">\n"

@@ -69,8 +69,7 @@ static bool paint(struct simulation *s, struct status *status)
 #pragma omp parallel num_threads(threads_for(scene_cells(s->scene)))
     stage_occupation(present(s), &s->discs, &s->team);
   }
-  if (s->team.failed) *status = s->team.first;
-  return !s->team.failed;
+  return simulation_usable(s, status);
 }
 
 /* The sums of the first exchange, in a region of our own like the above. */
@@ -277,12 +276,15 @@ static void say_congestion(struct simulation *s, struct status *status)
                s->plan.exchange ? ": discs may close an outlet" : "");
 }
 
+bool simulation_usable(const struct simulation *s, struct status *status)
+{
+  if (s->team.failed) *status = s->team.first;
+  return !s->team.failed;
+}
+
 bool simulation_check(struct simulation *s, struct status *status)
 {
-  if (s->team.failed) {
-    *status = s->team.first;
-    return false;
-  }
+  if (!simulation_usable(s, status)) return false;
   const struct worst_cell worst = diagnostics_worst(&s->flow.populations, s->flow.kernel->scan);
   const double speed = sqrt(worst.speed2), mach = speed * sqrt(3), most_congestion = 0.5;
   const long long step = (long long)s->step;
@@ -304,6 +306,7 @@ bool simulation_check(struct simulation *s, struct status *status)
 
 bool simulation_advance(struct simulation *s, int64_t steps, struct status *status)
 {
+  if (!simulation_usable(s, status)) return false;
   if (s->threads != threads_for(scene_cells(s->scene))) {
     s->threads = threads_for(scene_cells(s->scene));
     tuning_start(&s->tuning, s->scene, s->threads);
@@ -368,8 +371,17 @@ static bool follow_up(struct simulation *s, struct status *status)
 
 bool simulation_changed(struct simulation *s, struct status *status)
 {
+  if (!simulation_usable(s, status) || !follow_up(s, status)) return false;
   contacts_placed(&s->contacts);
-  return follow_up(s, status);
+  return true;
+}
+
+/* Tables never shrink, so that there is room for what they had in them. */
+bool simulation_unchanged(struct simulation *s)
+{
+  struct status ignored;
+  s->team.failed = false;
+  return follow_up(s, &ignored);
 }
 
 bool simulation_restore(struct simulation *s, struct store *store, struct status *status)

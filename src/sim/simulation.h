@@ -26,6 +26,9 @@ void simulation_start(struct simulation *simulation, flow_initial *initial, cons
  * number above 0.6, found at the latest run.check steps after it arose; the message says which, where and when. */
 bool simulation_advance(struct simulation *simulation, int64_t steps, struct status *status);
 
+/* False, with the reason of its failure, for a simulation that has failed. */
+bool simulation_usable(const struct simulation *simulation, struct status *status);
+
 /* Looks for divergence now. To be called before anything is written, so that no file holds a NaN. */
 bool simulation_check(struct simulation *simulation, struct status *status);
 
@@ -44,9 +47,13 @@ const struct discs *simulation_discs(const struct simulation *simulation);
 
 /* Changes from outside: what stands in the arrays of the discs, and the fluid of all cells, brought to equilibrium at this
  * density and velocity, arrays as those of simulation_fields. To be called between steps; after all of them, and before
- * the next step, simulation_changed follows up. It fails for want of memory. */
+ * the next step, simulation_changed follows up. It fails for want of memory, or if the simulation had failed before. */
 void simulation_set_fluid(struct simulation *simulation, const double *density, const double *ux, const double *uy);
 bool simulation_changed(struct simulation *simulation, struct status *status);
+
+/* Undoes a simulation_changed that lacked memory, once the arrays of the discs are as they were. False if that lacks memory,
+ * too: then the simulation can only be destroyed. */
+bool simulation_unchanged(struct simulation *simulation);
 
 /* Who covers what now; NULL in a scene without discs. */
 const struct occupation *simulation_occupation(const struct simulation *simulation);
