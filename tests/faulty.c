@@ -1,13 +1,14 @@
 /* Failures on demand. This is linked into a program of its own, `delbm-faulty`, where it takes the place of functions of
  * the C library, for the program and for the libraries that it uses. DELBM_FAIL="memory 17" lets the 17th allocation
  * after the start of main fail, and so on for `thread`, `file` and the name of a function, "lseek 2"; "memory 17 on"
- * also all that follow. A call that is made to fail is named in the file DELBM_FAILED_AT. The delbm that is installed
- * has nothing of this. */
+ * also all that follow. A call that is made to fail is named in the file DELBM_FAILED_AT. DELBM_LOCALE sets a locale for the
+ * process, as a library might that it is loaded with. The delbm that is installed has nothing of this. */
 #include <dirent.h>
 #include <dlfcn.h>
 #include <errno.h>
 #include <execinfo.h>
 #include <fcntl.h>
+#include <locale.h>
 #include <pthread.h>
 #include <stdarg.h>
 #include <stdatomic.h>
@@ -84,6 +85,12 @@ static __attribute__((constructor)) void arm(void)
   lasting = strcmp(on, "on") == 0;
   for (int kind = KIND_MEMORY; kind <= KIND_FILE; kind++)
     if (strcmp(chosen_name, names[kind]) == 0) chosen = (enum kind)kind;
+}
+
+static __attribute__((constructor)) void set_locale(void)
+{
+  const char *name = getenv("DELBM_LOCALE");
+  if (name && !setlocale(LC_ALL, name)) abort();
 }
 
 static void *no_memory(void)

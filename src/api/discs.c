@@ -1,6 +1,8 @@
 #include "api/handle.h"
+#include "base/memory.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 size_t delbm_disc_count(const struct delbm_simulation *s)
 {
@@ -62,22 +64,54 @@ static void set_state(const struct discs *d, size_t i, const struct delbm_disc_s
   d->omega[i] = state->spin;
 }
 
+static void get_states(const struct delbm_simulation *s, size_t first, size_t count, struct delbm_disc_state *states)
+{
+  for (size_t k = 0; k < count; k++) states[k] = api_disc_state(simulation_discs(s->simulation), first + k);
+}
+
+static void set_states(struct delbm_simulation *s, size_t first, size_t count, const struct delbm_disc_state *states)
+{
+  for (size_t k = 0; k < count; k++) set_state(simulation_discs(s->simulation), first + k, &states[k]);
+}
+
 enum delbm_code delbm_read_discs(const struct delbm_simulation *s, size_t first, size_t count,
                                  struct delbm_disc_state *states, struct delbm_status *out)
 {
-  struct status status;
-  if (!api_has_discs(s, first, count, &status)) return api_result(false, &status, out);
-  for (size_t k = 0; k < count; k++) states[k] = api_disc_state(simulation_discs(s->simulation), first + k);
-  return api_success(out);
+  struct api_call call;
+  const bool good = api_enter(&call, s, out) && api_has_discs(s, first, count, &call.status);
+  if (good) get_states(s, first, count, states);
+  return api_leave(&call, good);
+}
+
+/* Moves the discs, or puts them back where painting them lacks memory. */
+static bool move(struct delbm_simulation *s, size_t first, size_t count, const struct delbm_disc_state *states,
+                 struct status *status)
+{
+  struct delbm_disc_state *before = memory_allocate(count, sizeof *before, "the discs as they were", status);
+  if (!before) return false;
+  get_states(s, first, count, before);
+  set_states(s, first, count, states);
+  const bool moved = simulation_changed(s->simulation, status);
+  if (!moved) {
+    set_states(s, first, count, before);
+    s->lost = !simulation_unchanged(s->simulation);
+  }
+  free(before);
+  return moved;
+}
+
+static bool write_discs(struct delbm_simulation *s, size_t first, size_t count, const struct delbm_disc_state *states,
+                        struct status *status)
+{
+  if (!simulation_usable(s->simulation, status) || !api_has_discs(s, first, count, status)) return false;
+  for (size_t k = 0; k < count; k++)
+    if (!allows_state(s, first + k, &states[k], status)) return false;
+  return move(s, first, count, states, status);
 }
 
 enum delbm_code delbm_write_discs(struct delbm_simulation *s, size_t first, size_t count,
                                   const struct delbm_disc_state *states, struct delbm_status *out)
 {
-  struct status status;
-  if (!api_has_discs(s, first, count, &status)) return api_result(false, &status, out);
-  for (size_t k = 0; k < count; k++)
-    if (!allows_state(s, first + k, &states[k], &status)) return api_result(false, &status, out);
-  for (size_t k = 0; k < count; k++) set_state(simulation_discs(s->simulation), first + k, &states[k]);
-  return api_result(simulation_changed(s->simulation, &status), &status, out);
+  struct api_call call;
+  return api_leave(&call, api_enter(&call, s, out) && write_discs(s, first, count, states, &call.status));
 }

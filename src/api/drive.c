@@ -39,31 +39,39 @@ static bool set_drive(struct delbm_simulation *s, size_t disc, delbm_drive_funct
 enum delbm_code delbm_drive(struct delbm_simulation *s, size_t disc, delbm_drive_function *function, void *context,
                             struct delbm_status *out)
 {
-  struct status status;
-  return api_result(set_drive(s, disc, function, context, &status), &status, out);
+  struct api_call call;
+  return api_leave(&call, api_enter(&call, s, out) && set_drive(s, disc, function, context, &call.status));
 }
 
-static bool ask(const struct delbm_simulation *s, struct drive *drive, struct status *status)
+/* Notes the velocity and the spin that a callback asks for. */
+static bool ask(const struct delbm_simulation *s, struct drive *drive, struct api_call *call)
 {
-  const struct discs *d = simulation_discs(s->simulation);
-  const size_t i = drive->disc;
-  const struct delbm_disc_state now = api_disc_state(d, i);
+  const struct delbm_disc_state now = api_disc_state(simulation_discs(s->simulation), drive->disc);
   double velocity[2] = {now.velocity[0], now.velocity[1]}, spin = now.spin;
+  c_locale_leave(call->locale);
   drive->function(drive->context, simulation_step(s->simulation), &now, velocity, &spin);
-  if (!api_allows_motion(s, i, velocity, spin, status)) return false;
-  drive->change[0] = velocity[0] - now.velocity[0];
-  drive->change[1] = velocity[1] - now.velocity[1];
-  drive->change[2] = spin - now.spin;
-  d->vx[i] = velocity[0];
-  d->vy[i] = velocity[1];
-  d->omega[i] = spin;
+  call->locale = c_locale_enter();
+  if (!api_allows_motion(s, drive->disc, velocity, spin, &call->status)) return false;
+  drive->wanted[0] = velocity[0];
+  drive->wanted[1] = velocity[1];
+  drive->wanted[2] = spin;
   return true;
 }
 
-bool api_drive_begin(struct delbm_simulation *s, struct status *status)
+static void set_motion(const struct discs *d, struct drive *drive)
+{
+  double *const motion[3] = {&d->vx[drive->disc], &d->vy[drive->disc], &d->omega[drive->disc]};
+  for (int k = 0; k < 3; k++) {
+    drive->change[k] = drive->wanted[k] - *motion[k];
+    *motion[k] = drive->wanted[k];
+  }
+}
+
+bool api_drive_begin(struct delbm_simulation *s, struct api_call *call)
 {
   for (size_t k = 0; k < s->drive_count; k++)
-    if (!ask(s, &s->drives[k], status)) return false;
+    if (!ask(s, &s->drives[k], call)) return false;
+  for (size_t k = 0; k < s->drive_count; k++) set_motion(simulation_discs(s->simulation), &s->drives[k]);
   return true;
 }
 

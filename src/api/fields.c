@@ -10,24 +10,29 @@ static bool read_occupation(const struct delbm_simulation *s, double *values, st
   return simulation_sample(s->simulation, &all, &(struct sample){.occupation = values}, status);
 }
 
-enum delbm_code delbm_read_field(struct delbm_simulation *s, enum delbm_field field, double *values,
-                                 struct delbm_status *out)
+static bool read_field(struct delbm_simulation *s, enum delbm_field field, double *values, struct status *status)
 {
-  struct status status;
   switch (field) {
   case DELBM_DENSITY:
     simulation_fields(s->simulation, values, NULL, NULL);
-    return api_success(out);
+    return true;
   case DELBM_VELOCITY_X:
     simulation_fields(s->simulation, NULL, values, NULL);
-    return api_success(out);
+    return true;
   case DELBM_VELOCITY_Y:
     simulation_fields(s->simulation, NULL, NULL, values);
-    return api_success(out);
+    return true;
   case DELBM_OCCUPATION:
-    return api_result(read_occupation(s, values, &status), &status, out);
+    return read_occupation(s, values, status);
   }
-  return api_result(status_fail(&status, DELBM_USAGE, "no field %d", (int)field), &status, out);
+  return status_fail(status, DELBM_USAGE, "no field %d", (int)field);
+}
+
+enum delbm_code delbm_read_field(struct delbm_simulation *s, enum delbm_field field, double *values,
+                                 struct delbm_status *out)
+{
+  struct api_call call;
+  return api_leave(&call, api_enter(&call, s, out) && read_field(s, field, values, &call.status));
 }
 
 static bool allows_fluid(const struct delbm_simulation *s, const double *rho, const double *ux, const double *uy,
@@ -41,11 +46,19 @@ static bool allows_fluid(const struct delbm_simulation *s, const double *rho, co
   return true;
 }
 
+static bool write_fluid(struct delbm_simulation *s, const double *density, const double *velocity_x,
+                        const double *velocity_y, struct status *status)
+{
+  if (!simulation_usable(s->simulation, status) || !allows_fluid(s, density, velocity_x, velocity_y, status))
+    return false;
+  simulation_set_fluid(s->simulation, density, velocity_x, velocity_y);
+  s->lost = !simulation_changed(s->simulation, status);
+  return !s->lost;
+}
+
 enum delbm_code delbm_write_fluid(struct delbm_simulation *s, const double *density, const double *velocity_x,
                                   const double *velocity_y, struct delbm_status *out)
 {
-  struct status status;
-  if (!allows_fluid(s, density, velocity_x, velocity_y, &status)) return api_result(false, &status, out);
-  simulation_set_fluid(s->simulation, density, velocity_x, velocity_y);
-  return api_result(simulation_changed(s->simulation, &status), &status, out);
+  struct api_call call;
+  return api_leave(&call, api_enter(&call, s, out) && write_fluid(s, density, velocity_x, velocity_y, &call.status));
 }

@@ -27,20 +27,25 @@ static enum delbm_code tell(struct delbm_status *out, enum delbm_code code, cons
   return code;
 }
 
-enum delbm_code api_success(struct delbm_status *out)
+bool api_enter(struct api_call *call, const struct delbm_simulation *s, struct delbm_status *out)
 {
-  return tell(out, DELBM_OK, "");
+  call->out = out;
+  call->locale = c_locale_enter();
+  return !(s && s->lost) ||
+         status_fail(&call->status, DELBM_USAGE,
+                     "the state of this simulation was lost when a call failed: it can only be closed");
 }
 
-enum delbm_code api_result(bool good, const struct status *status, struct delbm_status *out)
+enum delbm_code api_leave(struct api_call *call, bool good)
 {
-  return good ? api_success(out) : tell(out, status->code, status->message);
+  c_locale_leave(call->locale);
+  return good ? tell(call->out, DELBM_OK, "") : tell(call->out, call->status.code, call->status.message);
 }
 
-enum delbm_code api_case_result(bool good, const struct status *status, const struct scene_errors *errors,
-                                struct delbm_status *out)
+enum delbm_code api_leave_case(struct api_call *call, bool good, const struct scene_errors *errors)
 {
-  const enum delbm_code code = api_result(good, status, out);
+  struct delbm_status *out = call->out;
+  const enum delbm_code code = api_leave(call, good);
   for (size_t i = 0; out && i < errors->count; i++) {
     const size_t length = strlen(out->message), room = sizeof out->message - length;
     if (strlen(errors->lines[i]) + 2 > room) break;
@@ -49,17 +54,21 @@ enum delbm_code api_case_result(bool good, const struct status *status, const st
   return code;
 }
 
-enum delbm_code delbm_step(struct delbm_simulation *s, int64_t steps, struct delbm_status *out)
+static bool step(struct delbm_simulation *s, int64_t steps, struct api_call *call)
 {
-  struct status status;
-  if (steps < 0) return api_result(status_fail(&status, DELBM_USAGE, "%lld steps", (long long)steps), &status, out);
-  if (s->drive_count == 0) return api_result(simulation_advance(s->simulation, steps, &status), &status, out);
+  if (steps < 0) return status_fail(&call->status, DELBM_USAGE, "%lld steps", (long long)steps);
+  if (s->drive_count == 0) return simulation_advance(s->simulation, steps, &call->status);
   for (int64_t k = 0; k < steps; k++) {
-    if (!api_drive_begin(s, &status) || !simulation_advance(s->simulation, 1, &status))
-      return api_result(false, &status, out);
+    if (!api_drive_begin(s, call) || !simulation_advance(s->simulation, 1, &call->status)) return false;
     api_drive_end(s);
   }
-  return api_success(out);
+  return true;
+}
+
+enum delbm_code delbm_step(struct delbm_simulation *s, int64_t steps, struct delbm_status *out)
+{
+  struct api_call call;
+  return api_leave(&call, api_enter(&call, s, out) && step(s, steps, &call));
 }
 
 int64_t delbm_time(const struct delbm_simulation *s)

@@ -2,6 +2,7 @@
 #ifndef DELBM_API_HANDLE_H
 #define DELBM_API_HANDLE_H
 
+#include "base/c_locale.h"
 #include "delbm/delbm.h"
 #include "scene/scene_errors.h"
 #include "sim/simulation.h"
@@ -11,7 +12,7 @@ struct drive {
   size_t disc;
   delbm_drive_function *function;
   void *context;
-  double change[3]; /* of velocity and spin, at the present step */
+  double wanted[3], change[3]; /* velocity and spin of the present step, and how they differ from those before it */
 };
 
 struct delbm_simulation {
@@ -20,15 +21,24 @@ struct delbm_simulation {
   uint32_t fingerprint; /* of the scene */
   struct drive *drives; /* [drive_count], by disc */
   size_t drive_count, drive_capacity;
+  bool lost; /* a call has failed that could not leave the state as it was */
 };
 
-/* Hands an outcome to the caller: the code of *status if not `good`. `out` may be NULL. */
-enum delbm_code api_success(struct delbm_status *out);
-enum delbm_code api_result(bool good, const struct status *status, struct delbm_status *out);
+/* A call of the library between its first line and its last. */
+struct api_call {
+  struct delbm_status *out; /* of the caller; may be NULL */
+  locale_t locale;          /* of the caller */
+  struct status status;
+};
+
+/* Begins a call: in the C locale from here on. False if the simulation, which may be NULL, can only be closed. */
+bool api_enter(struct api_call *call, const struct delbm_simulation *simulation, struct delbm_status *out);
+
+/* Ends it and hands its outcome to the caller: the code of call->status if not `good`. */
+enum delbm_code api_leave(struct api_call *call, bool good);
 
 /* The same for a case with errors, if there are any: as many of them as there is room for. */
-enum delbm_code api_case_result(bool good, const struct status *status, const struct scene_errors *errors,
-                                struct delbm_status *out);
+enum delbm_code api_leave_case(struct api_call *call, bool good, const struct scene_errors *errors);
 
 /* Fails unless first .. first + count - 1 are discs. */
 bool api_has_discs(const struct delbm_simulation *simulation, size_t first, size_t count, struct status *status);
@@ -40,8 +50,9 @@ bool api_allows_motion(const struct delbm_simulation *simulation, size_t disc, c
 /* The disc as it is now. */
 struct delbm_disc_state api_disc_state(const struct discs *discs, size_t disc);
 
-/* Before a step and after it: asks the callbacks and sets what they ask for; makes the forces whole. */
-bool api_drive_begin(struct delbm_simulation *simulation, struct status *status);
+/* Before a step and after it: asks the callbacks, in the caller's locale, and sets what they ask for, or nothing if one of
+ * them asks for too much; makes the forces whole. */
+bool api_drive_begin(struct delbm_simulation *simulation, struct api_call *call);
 void api_drive_end(struct delbm_simulation *simulation);
 
 #endif

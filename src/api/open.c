@@ -43,49 +43,56 @@ static bool settings_are_pairs(const char *const settings[], size_t count, struc
   return true;
 }
 
-static enum delbm_code open_source(struct delbm_simulation **simulation, const struct source *source,
-                                   const char *const settings[], size_t count, struct delbm_status *out)
+static bool open_source(struct delbm_simulation *s, const struct source *source, const char *const settings[],
+                        size_t count, struct scene_errors *errors, struct status *status)
 {
-  struct status status;
+  return settings_are_pairs(settings, count, status) &&
+         read_with_length(&s->scene, source, settings, count, errors, status) &&
+         scene_fingerprint(&s->scene, &s->fingerprint, status) && simulation_create(&s->simulation, &s->scene, status);
+}
+
+/* *simulation becomes what was opened, or NULL. */
+static enum delbm_code open_and_leave(struct api_call *call, struct delbm_simulation **simulation,
+                                      const struct source *source, const char *const settings[], size_t count)
+{
   struct scene_errors errors = {0};
-  struct delbm_simulation *s = NULL;
-  *simulation = NULL;
-  const bool good =
-      settings_are_pairs(settings, count, &status) && (s = memory_allocate(1, sizeof *s, "a simulation", &status)) &&
-      read_with_length(&s->scene, source, settings, count, &errors, &status) &&
-      scene_fingerprint(&s->scene, &s->fingerprint, &status) && simulation_create(&s->simulation, &s->scene, &status);
-  const enum delbm_code code = api_case_result(good, &status, &errors, out);
+  struct delbm_simulation *s = memory_allocate(1, sizeof *s, "a simulation", &call->status);
+  const bool good = s && open_source(s, source, settings, count, &errors, &call->status);
+  if (!good) delbm_close(s);
+  *simulation = good ? s : NULL;
+  const enum delbm_code code = api_leave_case(call, good, &errors);
   scene_errors_clear(&errors);
-  if (good)
-    *simulation = s;
-  else
-    delbm_close(s);
   return code;
 }
 
 enum delbm_code delbm_open_file(struct delbm_simulation **simulation, const char *path, const char *const settings[],
                                 size_t count, struct delbm_status *out)
 {
-  return open_source(simulation, &(struct source){.path = path}, settings, count, out);
+  struct api_call call;
+  api_enter(&call, NULL, out);
+  return open_and_leave(&call, simulation, &(struct source){.path = path}, settings, count);
 }
 
 enum delbm_code delbm_open_text(struct delbm_simulation **simulation, const char *yaml, const char *const settings[],
                                 size_t count, struct delbm_status *out)
 {
+  struct api_call call;
   const struct source source = {.text = {"case", true, yaml, strlen(yaml)}};
-  return open_source(simulation, &source, settings, count, out);
+  api_enter(&call, NULL, out);
+  return open_and_leave(&call, simulation, &source, settings, count);
 }
 
 enum delbm_code delbm_open_scene(struct delbm_simulation **simulation, const struct delbm_scene *scene,
                                  const char *const settings[], size_t count, struct delbm_status *out)
 {
-  struct status status;
+  struct api_call call;
   struct source source = {.text = {.origin = "scene"}};
-  char *text = description_write(scene, &source.text.size, &status);
+  api_enter(&call, NULL, out);
   *simulation = NULL;
-  if (!text) return api_result(false, &status, out);
+  char *text = description_write(scene, &source.text.size, &call.status);
+  if (!text) return api_leave(&call, false);
   source.text.bytes = text;
-  const enum delbm_code code = open_source(simulation, &source, settings, count, out);
+  const enum delbm_code code = open_and_leave(&call, simulation, &source, settings, count);
   free(text);
   return code;
 }

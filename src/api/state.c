@@ -3,17 +3,15 @@
 
 enum delbm_code delbm_save(struct delbm_simulation *s, const char *path, struct delbm_status *out)
 {
-  struct status status;
+  struct api_call call;
   const struct run_record none = {0};
-  return api_result(checkpoint_write(path, s->fingerprint, s->simulation, &none, &status), &status, out);
+  return api_leave(&call, api_enter(&call, s, out) &&
+                              checkpoint_write(path, s->fingerprint, s->simulation, &none, &call.status));
 }
 
 enum delbm_code delbm_load(struct delbm_simulation *s, const char *path, struct delbm_status *out)
 {
-  struct status status;
-  struct checkpoint_head head;
-  struct run_record record;
-  const bool loaded = checkpoint_examine(path, s->fingerprint, &head, &status) &&
-                      checkpoint_read(path, s->simulation, &record, &status);
-  return api_result(loaded, &status, out);
+  struct api_call call;
+  return api_leave(&call, api_enter(&call, s, out) &&
+                              checkpoint_load(path, s->fingerprint, s->simulation, &s->lost, &call.status));
 }

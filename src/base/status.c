@@ -1,8 +1,18 @@
 #include "base/status.h"
 
+#include "base/c_locale.h"
+
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
+
+/* In the C locale also where a thread of OpenMP has failed. */
+static void print(char *text, size_t size, const char *format, va_list arguments)
+{
+  const locale_t before = c_locale_enter();
+  vsnprintf(text, size, format, arguments);
+  c_locale_leave(before);
+}
 
 bool status_fail(struct status *status, enum delbm_code code, const char *format, ...)
 {
@@ -10,7 +20,7 @@ bool status_fail(struct status *status, enum delbm_code code, const char *format
   va_start(arguments, format);
   status->code = code;
   status->out_of_memory = false;
-  vsnprintf(status->message, sizeof status->message, format, arguments);
+  print(status->message, sizeof status->message, format, arguments);
   va_end(arguments);
   return false;
 }
@@ -20,6 +30,6 @@ void status_add(struct status *status, const char *format, ...)
   const size_t length = strlen(status->message);
   va_list arguments;
   va_start(arguments, format);
-  vsnprintf(status->message + length, sizeof status->message - length, format, arguments);
+  print(status->message + length, sizeof status->message - length, format, arguments);
   va_end(arguments);
 }

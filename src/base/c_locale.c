@@ -1,0 +1,13 @@
+#include "base/c_locale.h"
+
+/* The C locale is a constant of the C library: naming it allocates nothing and cannot fail. */
+locale_t c_locale_enter(void)
+{
+  return uselocale(newlocale(LC_ALL_MASK, "C", (locale_t)0));
+}
+
+void c_locale_leave(locale_t before)
+{
+  const locale_t ours = uselocale(before);
+  if (ours != before) freelocale(ours);
+}
