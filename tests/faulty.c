@@ -1,8 +1,10 @@
-/* Failures on demand. This is linked into a program of its own, `delbm-faulty`, where it takes the place of functions of
- * the C library, for the program and for the libraries that it uses. DELBM_FAIL="memory 17" lets the 17th allocation
+/* Failures on demand. This is linked into programs of their own, `delbm-faulty` and `host-faulty`, where it takes the place of functions of
+ * the C library, for them and for the libraries that they use. DELBM_FAIL="memory 17" lets the 17th allocation
  * after the start of main fail, and so on for `thread`, `file` and the name of a function, "lseek 2"; "memory 17 on"
  * also all that follow. A call that is made to fail is named in the file DELBM_FAILED_AT. DELBM_LOCALE sets a locale for the
  * process, as a library might that it is loaded with. The delbm that is installed has nothing of this. */
+#include "faulty.h"
+
 #include <dirent.h>
 #include <dlfcn.h>
 #include <errno.h>
@@ -12,7 +14,6 @@
 #include <pthread.h>
 #include <stdarg.h>
 #include <stdatomic.h>
-#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -72,19 +73,34 @@ static bool is_memory_to_fail(const char *name, const void *caller)
   return chosen == KIND_MEMORY && !is_of_hdf5(caller) && is_to_fail(KIND_MEMORY, name);
 }
 
-/* Runs after the constructors of the libraries: what these do is not the program's. */
-static __attribute__((constructor)) void arm(void)
+void faulty_begin(const char *wish)
 {
   static const char *const names[] = {"none", "memory", "thread", "file"};
-  const char *wish = getenv("DELBM_FAIL"), *path = getenv("DELBM_FAILED_AT");
-  char on[4] = "";
+  char on[4] = "", name[sizeof chosen_name];
   long call = 0;
-  if (!wish || sscanf(wish, "%15s %ld %3s", chosen_name, &call, on) < 2) return;
-  if (path) report = open(path, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+  if (sscanf(wish, "%15s %ld %3s", name, &call, on) < 2) return;
+  memcpy(chosen_name, name, sizeof chosen_name);
   chosen_call = call;
+  atomic_store(&calls, 0);
   lasting = strcmp(on, "on") == 0;
   for (int kind = KIND_MEMORY; kind <= KIND_FILE; kind++)
     if (strcmp(chosen_name, names[kind]) == 0) chosen = (enum kind)kind;
+}
+
+bool faulty_end(void)
+{
+  chosen = KIND_NONE;
+  chosen_name[0] = '\0';
+  return atomic_load(&calls) >= chosen_call;
+}
+
+/* Runs after the constructors of the libraries: what these do is not the program's. */
+static __attribute__((constructor)) void arm(void)
+{
+  const char *wish = getenv("DELBM_FAIL"), *path = getenv("DELBM_FAILED_AT");
+  if (!wish) return;
+  if (path) report = open(path, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+  faulty_begin(wish);
 }
 
 static __attribute__((constructor)) void set_locale(void)

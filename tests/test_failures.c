@@ -124,6 +124,18 @@ Test(failures, of_any_thread_end_a_run_with_words)
             "");
 }
 
+/* Seen from a host of the library: host_faulty.c. */
+Test(failures, of_any_allocation_leave_a_simulation_of_the_library_as_it_was)
+{
+  setenv("OMP_NUM_THREADS", "2", 1);
+  cr_expect_eq(shell("%s memory", HOST_FAULTY), 0);
+}
+
+Test(failures, of_any_file_leave_a_simulation_of_the_library_as_it_was)
+{
+  cr_expect_eq(shell("%s file", HOST_FAULTY), 0);
+}
+
 #ifdef DELBM_HDF5
 /* The case with snapshots of the flow; a whole run of it, and a part from which to go on. */
 static const char *const with_fields = " --set output.fields.every=2";

@@ -1,5 +1,6 @@
 /* Saving and restoring, in memory and from outside: a run that was stopped, however, ends as one that never was. */
 #include "drive.h"
+#include "forge.h"
 #include "scenes.h"
 #include "shell.h"
 
@@ -9,7 +10,6 @@
 
 #include <math.h>
 #include <omp.h>
-#include <zlib.h>
 
 /* A state as bytes. */
 struct saved {
@@ -201,30 +201,6 @@ Test(checkpoint, of_another_case_is_known_and_of_another_length_is_not)
   scene.contact.alpha = nextafter(scene.contact.alpha, 1);
   cr_assert(scene_fingerprint(&scene, &second, &status));
   cr_expect_neq(first, second);
-}
-
-/* Puts a checksum right again, as fuzzing does. */
-static void put_sum_right(unsigned char *bytes, size_t size)
-{
-  const uint32_t sum = (uint32_t)crc32_z(0, bytes, size - sizeof sum);
-  memcpy(bytes + size - sizeof sum, &sum, sizeof sum);
-}
-
-/* Changes the step that a checkpoint's head tells; its checksum is right. */
-static void forge_step(const char *path, int64_t by)
-{
-  static unsigned char bytes[1 << 20];
-  struct checkpoint_head head;
-  FILE *file = fopen(path, "r+b");
-  cr_assert(file);
-  const size_t size = fread(bytes, 1, sizeof bytes, file);
-  cr_assert(size > sizeof head && size < sizeof bytes);
-  memcpy(&head, bytes, sizeof head);
-  head.step += by;
-  memcpy(bytes, &head, sizeof head);
-  put_sum_right(bytes, size);
-  rewind(file);
-  cr_assert(fwrite(bytes, 1, size, file) == size && fclose(file) == 0);
 }
 
 Test(checkpoint, whose_head_tells_another_step_than_its_state_is_refused_though_its_checksum_is_right)

@@ -10,14 +10,30 @@
  * lattice units all the same.
  *
  * Errors. A call that can fail returns a code, DELBM_OK if all is well, and then has filled *status, if that is not
- * NULL. The library never ends the program and never prints. After a failed call the simulation is as it was, but for
- * two: once delbm_step has failed, the run has diverged and can be read but not stepped; once delbm_load has failed,
- * it can only be closed, unless the checkpoint was refused outright (DELBM_IO).
+ * NULL. The library never ends the program and never prints. After a failed call the simulation is as it was, with these
+ * exceptions:
+ * - Steps that delbm_step had done before it failed stay done; delbm_time tells how many.
+ * - A run that has diverged, which delbm_step or delbm_save finds (DELBM_FAILED), or whose memory ran out within a step,
+ *   can be read and closed, but not stepped, changed, saved or loaded: that fails with the first reason again.
+ * - If delbm_load fails after the file was found good (memory runs out, the disk fails, the file was forged), or if
+ *   delbm_write_discs or delbm_write_fluid lacks memory even to undo what it did, the simulation can only be closed: each
+ *   other call that can fail then does, with DELBM_USAGE, and says so.
  *
  * Threads. A step uses OMP_NUM_THREADS threads; results are the same bits for any number, and the same as those of
  * `delbm run`. Only one call at a time may use a handle; different handles may be used by different threads. Waiting
  * threads spin unless GOMP_SPINCOUNT or OMP_WAIT_POLICY is set before the program starts (the program `delbm` sets the
- * first to 500), which costs dear where threads outnumber cores. */
+ * first to 500), which costs dear where threads outnumber cores. A call opens OpenMP regions of its own, and may be made
+ * by one thread, or by each with a handle of its own, inside of a region of the host: with the same results, but with one
+ * thread each unless omp_set_max_active_levels allows more.
+ *
+ * The host. Numbers are read and written with a decimal point, and messages are in English, whatever its locale; its
+ * locale, signal handlers, streams, working folder and floating-point environment stay as they are. A path is relative
+ * to the working folder at the time of the call. What the library cannot prevent:
+ * - If the system has no more threads, the OpenMP runtime ends the program with words of its own.
+ * - OpenMP does not survive fork(): where the parent has used the library, a child must not, but may exec another program.
+ * - Results are the same bits as those of `delbm run` with rounding to nearest and subnormal numbers kept. A host that was
+ *   linked with -ffast-math, or that sets another rounding, may get others.
+ * - A limit on the size of files raises SIGXFSZ, which ends the program unless it is ignored. */
 #ifndef DELBM_DELBM_H
 #define DELBM_DELBM_H
 
@@ -50,8 +66,8 @@ DELBM_API enum delbm_code delbm_open_scene(struct delbm_simulation **simulation,
 /* NULL is fine. */
 DELBM_API void delbm_close(struct delbm_simulation *simulation);
 
-/* Advances by `steps` >= 0 steps. DELBM_FAILED when the run has diverged, which is looked for every run.check steps;
- * DELBM_USAGE when a callback has asked for a velocity that no disc may have. */
+/* Advances by `steps` >= 0 steps. DELBM_FAILED when the run has diverged, which is looked for every run.check steps, or
+ * when memory runs out; DELBM_USAGE when a callback has asked for a velocity that no disc may have, before that step. */
 DELBM_API enum delbm_code delbm_step(struct delbm_simulation *simulation, int64_t steps, struct delbm_status *status);
 
 /* Steps done. */
@@ -88,7 +104,9 @@ typedef void delbm_drive_function(void *context, int64_t step, const struct delb
 
 /* From now on asks `function` before each step; NULL ends that, and the disc keeps its last velocity. The force is what
  * acts on the solid, as for free discs: its mass times its acceleration is that force and what the drive adds. A
- * callback must not call anything with this simulation; checkpoints do not hold it. */
+ * callback runs in the thread that called delbm_step, between steps. It must not call anything with this simulation, and
+ * must return: neither longjmp nor a C++ exception may leave it. If one of several asks for a velocity that no disc may
+ * have, no disc's velocity changes. Checkpoints do not hold callbacks. */
 DELBM_API enum delbm_code delbm_drive(struct delbm_simulation *simulation, size_t disc, delbm_drive_function *function,
                                       void *context, struct delbm_status *status);
 
@@ -110,9 +128,10 @@ DELBM_API enum delbm_code delbm_write_fluid(struct delbm_simulation *simulation,
                                             const double *velocity_x, const double *velocity_y,
                                             struct delbm_status *status);
 
-/* Writes the whole state to a file, in one move: a file that stood there stands until the new one is whole. Loading it
- * into a simulation opened from the same case gives what was saved, and its coming steps have the same bits. The files
- * checkpoint.0 and checkpoint.1 of a run are such files, of its case.yaml. */
+/* Writes the whole state to a file, in one move: it is written as `path`.tmp, forced to the disk and renamed, so that a
+ * file that stood there stands until the new one is whole. Two saves to one path at the same time are an error of the host.
+ * Loading the file into a simulation opened from the same case gives what was saved, and its coming steps have the same
+ * bits. The files checkpoint.0 and checkpoint.1 of a run are such files, of its case.yaml. */
 DELBM_API enum delbm_code delbm_save(struct delbm_simulation *simulation, const char *path,
                                      struct delbm_status *status);
 DELBM_API enum delbm_code delbm_load(struct delbm_simulation *simulation, const char *path,
