@@ -124,6 +124,17 @@ Test(faults, a_table_that_is_removed_or_replaced_ends_the_run)
                0);
 }
 
+/* Root may write anywhere: the run is another user's. */
+Test(faults, a_folder_that_nobody_may_write_to_any_more_ends_the_run)
+{
+  if (shell("setpriv --reuid 65534 --regid 65534 --clear-groups $DELBM --version >/dev/null 2>&1") != 0)
+    cr_skip_test("becoming another user needs root");
+  cr_assert_eq(shell("chmod 755 . && mkdir cut && chown 65534:65534 cut && : >out && : >err && chmod 666 out err"), 0);
+  setenv("DELBM", "setpriv --reuid 65534 --regid 65534 --clear-groups " DELBM, 1);
+  cr_expect_eq(disturb("chmod 555 cut"), 4);
+  cr_expect_eq(shell("grep -qE '^delbm: cannot (create|write) cut/[a-z0-9./]+: Permission denied$' err"), 0);
+}
+
 #ifdef DELBM_PNG
 Test(faults, a_folder_of_frames_that_is_removed_ends_the_run)
 {

@@ -27,12 +27,13 @@
  * thread each unless omp_set_max_active_levels allows more.
  *
  * The host. Numbers are read and written with a decimal point, and messages are in English, whatever its locale; its
- * locale, signal handlers, streams, working folder and floating-point environment stay as they are. A path is relative
- * to the working folder at the time of the call. What the library cannot prevent:
+ * locale, signal handlers, streams, working folder and rounding mode stay as they are. A path is relative to the working
+ * folder at the time of the call. What the library cannot prevent:
  * - If the system has no more threads, the OpenMP runtime ends the program with words of its own.
  * - OpenMP does not survive fork(): where the parent has used the library, a child must not, but may exec another program.
  * - Results are the same bits as those of `delbm run` with rounding to nearest and subnormal numbers kept. A host that was
- *   linked with -ffast-math, or that sets another rounding, may get others.
+ *   linked with -ffast-math, or that sets another rounding, may get others; one that has floating-point exceptions trapped
+ *   may be ended by SIGFPE.
  * - A limit on the size of files raises SIGXFSZ, which ends the program unless it is ignored. */
 #ifndef DELBM_DELBM_H
 #define DELBM_DELBM_H
