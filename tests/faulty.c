@@ -170,6 +170,16 @@ int open(const char *path, int flags, ...)
   return is_to_fail(KIND_FILE, "open") ? no_room() : original(path, flags, mode);
 }
 
+int openat(int folder, const char *path, int flags, ...)
+{
+  ORIGINAL(openat)
+  va_list arguments;
+  va_start(arguments, flags);
+  const mode_t mode = flags & O_CREAT ? va_arg(arguments, mode_t) : 0;
+  va_end(arguments);
+  return is_to_fail(KIND_FILE, "openat") ? no_room() : original(folder, path, flags, mode);
+}
+
 FILE *fopen(const char *restrict path, const char *restrict mode)
 {
   ORIGINAL(fopen)
@@ -240,10 +250,10 @@ int mkdir(const char *path, mode_t mode)
   return is_to_fail(KIND_FILE, "mkdir") ? no_room() : original(path, mode);
 }
 
-int rename(const char *from, const char *to)
+int renameat(int from_folder, const char *from, int to_folder, const char *to)
 {
-  ORIGINAL(rename)
-  return is_to_fail(KIND_FILE, "rename") ? no_room() : original(from, to);
+  ORIGINAL(renameat)
+  return is_to_fail(KIND_FILE, "renameat") ? no_room() : original(from_folder, from, to_folder, to);
 }
 
 int fsync(int descriptor)

@@ -113,5 +113,6 @@ enum delbm_code delbm_write_discs(struct delbm_simulation *s, size_t first, size
                                   const struct delbm_disc_state *states, struct delbm_status *out)
 {
   struct api_call call;
-  return api_leave(&call, api_enter(&call, s, out) && write_discs(s, first, count, states, &call.status));
+  const bool good = api_enter(&call, s, out) && write_discs(s, first, count, states, &call.status);
+  return api_leave(&call, good);
 }

@@ -40,7 +40,8 @@ enum delbm_code delbm_drive(struct delbm_simulation *s, size_t disc, delbm_drive
                             struct delbm_status *out)
 {
   struct api_call call;
-  return api_leave(&call, api_enter(&call, s, out) && set_drive(s, disc, function, context, &call.status));
+  const bool good = api_enter(&call, s, out) && set_drive(s, disc, function, context, &call.status);
+  return api_leave(&call, good);
 }
 
 /* Notes the velocity and the spin that a callback asks for. */

@@ -32,7 +32,8 @@ enum delbm_code delbm_read_field(struct delbm_simulation *s, enum delbm_field fi
                                  struct delbm_status *out)
 {
   struct api_call call;
-  return api_leave(&call, api_enter(&call, s, out) && read_field(s, field, values, &call.status));
+  const bool good = api_enter(&call, s, out) && read_field(s, field, values, &call.status);
+  return api_leave(&call, good);
 }
 
 static bool allows_fluid(const struct delbm_simulation *s, const double *rho, const double *ux, const double *uy,
@@ -60,5 +61,6 @@ enum delbm_code delbm_write_fluid(struct delbm_simulation *s, const double *dens
                                   const double *velocity_y, struct delbm_status *out)
 {
   struct api_call call;
-  return api_leave(&call, api_enter(&call, s, out) && write_fluid(s, density, velocity_x, velocity_y, &call.status));
+  const bool good = api_enter(&call, s, out) && write_fluid(s, density, velocity_x, velocity_y, &call.status);
+  return api_leave(&call, good);
 }

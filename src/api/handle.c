@@ -68,7 +68,8 @@ static bool step(struct delbm_simulation *s, int64_t steps, struct api_call *cal
 enum delbm_code delbm_step(struct delbm_simulation *s, int64_t steps, struct delbm_status *out)
 {
   struct api_call call;
-  return api_leave(&call, api_enter(&call, s, out) && step(s, steps, &call));
+  const bool good = api_enter(&call, s, out) && step(s, steps, &call);
+  return api_leave(&call, good);
 }
 
 int64_t delbm_time(const struct delbm_simulation *s)

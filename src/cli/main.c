@@ -89,7 +89,7 @@ int main(int argc, char **argv)
 {
   limit_spinning(argv);
   if (!hold_standard_streams()) return DELBM_IO;
-  c_locale_enter(); /* should a library have set another for the process */
+  c_locale_enter();         /* should a library have set another for the process */
   signal(SIGPIPE, SIG_IGN); /* a closed pipe is an error like any other: check_stdout reports it */
   signal(SIGXFSZ, SIG_IGN); /* and so is a file that may not grow: the write that fails does */
   return check_stdout(dispatch(argc, argv));

@@ -76,26 +76,40 @@ static bool is_device(const struct stat *found)
   return S_ISCHR(found->st_mode) || S_ISBLK(found->st_mode);
 }
 
-int file_create(const char *path, int flags, struct status *status)
+/* A new file `name` in an open folder; the path is for messages. */
+static int create_at(int folder, const char *name, const char *path, int flags, struct status *status)
 {
   struct stat found;
-  const bool exists = lstat(path, &found) == 0, device = exists && is_device(&found);
-  if (exists && !device && !file_remove(path, status)) return -1;
-  const int descriptor = open(path, flags | O_CLOEXEC | (device ? 0 : O_CREAT | O_EXCL), 0666);
+  const bool exists = fstatat(folder, name, &found, AT_SYMLINK_NOFOLLOW) == 0, device = exists && is_device(&found);
+  if (exists && !device && unlinkat(folder, name, 0) != 0 && errno != ENOENT) {
+    file_fail(status, "remove", path, errno);
+    return -1;
+  }
+  const int descriptor = openat(folder, name, flags | O_CLOEXEC | (device ? 0 : O_CREAT | O_EXCL), 0666);
   if (descriptor < 0) file_fail(status, "create", path, errno);
   return descriptor;
 }
 
-FILE *file_create_stream(const char *path, struct status *status)
+static FILE *create_stream_at(int folder, const char *name, const char *path, struct status *status)
 {
-  const int descriptor = file_create(path, O_WRONLY, status);
+  const int descriptor = create_at(folder, name, path, O_WRONLY, status);
   if (descriptor < 0) return NULL;
   FILE *stream = fdopen(descriptor, "wb");
   if (stream) return stream;
   file_fail(status, "create", path, errno);
   close(descriptor);
-  unlink(path);
+  unlinkat(folder, name, 0);
   return NULL;
+}
+
+int file_create(const char *path, int flags, struct status *status)
+{
+  return create_at(AT_FDCWD, path, path, flags, status);
+}
+
+FILE *file_create_stream(const char *path, struct status *status)
+{
+  return create_stream_at(AT_FDCWD, path, path, status);
 }
 
 /* False unless this is a file with bytes of its own, and without `shared` of no other name. */
@@ -158,16 +172,41 @@ static bool check_replaceable(const char *path, struct status *status)
          status_fail(status, DELBM_IO, "cannot write %s: it is a device, not a file", path);
 }
 
-bool replacement_begin(struct replacement *file, const char *path, struct status *status)
+/* What a path ends in, and the folder that this lies in, opened; -1 on failure. */
+static const char *last_part(const char *path)
 {
-  *file = (struct replacement){0};
-  if (!check_replaceable(path, status)) return false;
-  file->path = concatenate(path, "", "", status);
-  if (file->path) file->temporary = concatenate(path, ".tmp", "", status);
-  if (file->temporary) file->stream = file_create_stream(file->temporary, status);
-  if (file->stream) return true;
+  const char *slash = strrchr(path, '/');
+  return slash ? slash + 1 : path;
+}
+
+static int open_parent(const char *path, struct status *status)
+{
+  char *folder = concatenate(path, "", "", status);
+  if (!folder) return -1;
+  folder[last_part(path) - path] = '\0';
+  const int descriptor = open(*folder ? folder : ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) file_fail(status, "create", path, errno);
+  free(folder);
+  return descriptor;
+}
+
+/* Releases what a replacement has, once it has ended. */
+static void release(struct replacement *file)
+{
+  if (file->folder >= 0) close(file->folder);
   free(file->temporary);
   free(file->path);
+}
+
+bool replacement_begin(struct replacement *file, const char *path, struct status *status)
+{
+  *file = (struct replacement){.folder = -1};
+  if (!check_replaceable(path, status)) return false;
+  if ((file->path = concatenate(path, "", "", status)) && (file->temporary = concatenate(path, ".tmp", "", status)) &&
+      (file->folder = open_parent(file->temporary, status)) >= 0 &&
+      (file->stream = create_stream_at(file->folder, last_part(file->temporary), file->temporary, status)))
+    return true;
+  release(file);
   return false;
 }
 
@@ -178,27 +217,11 @@ bool file_sync(int descriptor, const char *path, struct status *status)
   return true;
 }
 
-static bool sync_directory(const char *path, struct status *status)
-{
-  const int descriptor = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return file_fail(status, "open folder", path, errno);
-  const bool synced = file_sync(descriptor, path, status);
-  close(descriptor);
-  return synced;
-}
-
-/* Releases the paths of a replacement that has ended. */
-static void release(struct replacement *file)
-{
-  free(file->temporary);
-  free(file->path);
-}
-
 /* Closes and removes the file as far as it was written; returns false. */
 static bool discard(struct replacement *file)
 {
   fclose(file->stream);
-  unlink(file->temporary);
+  unlinkat(file->folder, last_part(file->temporary), 0);
   return false;
 }
 
@@ -210,10 +233,12 @@ static bool commit(struct replacement *file, bool durably, struct status *status
     return discard(file);
   }
   if (durably && !file_sync(fileno(file->stream), file->path, status)) return discard(file);
-  const bool moved = fclose(file->stream) == 0 && rename(file->temporary, file->path) == 0;
+  const char *temporary = last_part(file->temporary);
+  const bool moved =
+      fclose(file->stream) == 0 && renameat(file->folder, temporary, file->folder, last_part(file->path)) == 0;
   if (!moved) {
     file_fail(status, "write", file->path, errno);
-    unlink(file->temporary);
+    unlinkat(file->folder, temporary, 0);
   }
   return moved;
 }
@@ -225,21 +250,9 @@ bool replacement_commit(struct replacement *file, struct status *status)
   return moved;
 }
 
-/* The folder that a path lies in. */
-static bool sync_parent(char *path, struct status *status)
-{
-  char *slash = strrchr(path, '/');
-  if (!slash) return sync_directory(".", status);
-  if (slash == path) return sync_directory("/", status);
-  *slash = '\0';
-  const bool synced = sync_directory(path, status);
-  *slash = '/';
-  return synced;
-}
-
 bool replacement_commit_durably(struct replacement *file, struct status *status)
 {
-  const bool moved = commit(file, true, status) && sync_parent(file->path, status);
+  const bool moved = commit(file, true, status) && file_sync(file->folder, file->path, status);
   release(file);
   return moved;
 }

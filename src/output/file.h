@@ -8,9 +8,11 @@
 #include <stdio.h>
 
 /* A file written beside its final place, as NAME.tmp, and moved there once complete, so that no reader ever sees half of
- * it. A link of either name is replaced, and not followed. */
+ * it. A link of either name is replaced, and not followed. All happens in the folder that the path led to at first, wherever
+ * that is moved to meanwhile. */
 struct replacement {
   FILE *stream;
+  int folder; /* descriptor */
   char *path;
   char *temporary;
 };

@@ -316,9 +316,9 @@ static bool record_frame(struct recorder *recorder, struct simulation *simulatio
 static bool write_checkpoint(struct recorder *recorder, struct simulation *simulation, struct status *status)
 {
   struct run_record record = {.seconds = recorder_elapsed(recorder), .output = recorder->seconds};
-  if (!file_stays(recorder->lock, recorder->directory, status)) return false;
   if (recorder->table && !csv_sync(recorder->table, &record.table_bytes, status)) return false;
   if (recorder->fields && !fields_set_mark(recorder->fields, &record.fields, status)) return false;
+  if (!file_stays(recorder->lock, recorder->directory, status)) return false; /* right before the path is taken */
   if (!checkpoint_write(recorder->checkpoint_path[recorder->next_checkpoint], recorder->fingerprint, simulation,
                         &record, status))
     return false;
