@@ -68,6 +68,85 @@ Test(sample, counts_what_discs_cover_once)
   for (int k = 0; k < 3000; k++) cr_assert_leq(sample.occupation[k], 1);
 }
 
+/* The occupation of each cell, to be freed. */
+static double *occupation_of(const struct scene *scene)
+{
+  const struct sample_grid grid = {.count = {scene->domain.size[0], scene->domain.size[1]}, .stride = 1};
+  double *occupation = calloc(sample_points(&grid), sizeof *occupation);
+  struct simulation *simulation = start(scene);
+  struct status status;
+  cr_assert(simulation_sample(simulation, &grid, &(struct sample){.occupation = occupation}, &status));
+  simulation_destroy(simulation);
+  return occupation;
+}
+
+/* What one disc covers is the area itself (test_occupation); of a pair, in each cell, the sum of both areas. */
+Test(sample, counts_in_each_cell_of_a_pair_what_either_disc_covers_alone)
+{
+  for (int form = 0; form < FORM_COUNT; form++)
+    for (int motion = DISC_FREE; motion <= DISC_DRIVEN; motion++) {
+      struct scene both = scene_box(40, 30, 0.05, SIDES_CLOSED), alone[2];
+      both.coupling.form = form;
+      const struct disc_spec discs[2] = {
+          {.radius = 5.3, .density = 2, .position = {14.2, 4.9}, .spin = 0.02, .motion = (enum disc_motion)motion},
+          {.radius = 6.1, .density = 1, .position = {24.4, 8.7}, .motion = DISC_FIXED}};
+      for (int i = 0; i < 2; i++) {
+        const struct disc_spec *disc = &discs[i];
+        alone[i] = both;
+        alone[i].particles.discs = NULL, alone[i].particles.count = 0;
+        *scene_add_disc(&alone[i], disc->radius, disc->density, 0, 0) = *disc;
+      }
+      for (int i = 0; i < 2; i++) *scene_add_disc(&both, 1, 1, 0, 0) = discs[i];
+      double *of_both = occupation_of(&both), *of_one = occupation_of(&alone[0]), *of_other = occupation_of(&alone[1]);
+      int shared = 0;
+      for (int k = 0; k < 40 * 30; k++) {
+        const double sum = of_one[k] + of_other[k];
+        cr_assert_float_eq(of_both[k], fmin(1, sum), 1e-12, "form %d, motion %d, cell (%d, %d): %g, not %g", form,
+                           motion, k % 40, k / 40, of_both[k], sum);
+        shared += of_one[k] > 0 && of_other[k] > 0 && sum < 1;
+      }
+      cr_expect_gt(shared, 0, "the discs share cells that they do not fill");
+      free(of_both), free(of_one), free(of_other);
+      for (int i = 0; i < 2; i++) scene_clear(&alone[i]);
+      scene_clear(&both);
+    }
+}
+
+/* Body force and the force against volume flux are part of what the velocity is read with. */
+Test(sample, fields_that_are_set_are_read_back_whatever_the_forces)
+{
+  enum { NX = 30, NY = 26, CELLS = NX * NY };
+  static double density[CELLS], ux[CELLS], uy[CELLS], read[3][CELLS];
+  for (int zero_flux = 0; zero_flux < 2; zero_flux++)
+    for (int odd = 0; odd < 2; odd++) {
+      struct scene scene = scene_box(NX, NY, 0.05, SIDES_CLOSED);
+      scene.fluid.force[0] = 2e-4, scene.fluid.force[1] = -3e-4;
+      scene.fluid.zero_flux = zero_flux;
+      scene.domain.side[SIDE_TOP].velocity[0] = 0.05;
+      scene.domain.side[SIDE_RIGHT].velocity[1] = 0.04;
+      struct simulation *simulation = start(&scene);
+      struct status status;
+      advance(simulation, 10 + odd);
+      for (int k = 0; k < CELLS; k++) {
+        density[k] = 1 + 0.01 * sin(k);
+        ux[k] = 0.03 * sin(0.1 * k);
+        uy[k] = 0.02 * cos(0.07 * k);
+      }
+      simulation_set_fluid(simulation, density, ux, uy);
+      cr_assert(simulation_changed(simulation, &status), "%s", status.message);
+      simulation_fields(simulation, read[0], read[1], read[2]);
+      for (int k = 0; k < CELLS; k++) {
+        cr_assert_float_eq(read[0][k], density[k], 1e-14);
+        cr_assert_float_eq(read[1][k], ux[k], 1e-14, "zero_flux %d, cell %d: %g, not %g", zero_flux, k, read[1][k],
+                           ux[k]);
+        cr_assert_float_eq(read[2][k], uy[k], 1e-14, "zero_flux %d, cell %d: %g, not %g", zero_flux, k, read[2][k],
+                           uy[k]);
+      }
+      simulation_destroy(simulation);
+      scene_clear(&scene);
+    }
+}
+
 Test(sample, wraps_vorticity_at_periodic_sides_alone)
 {
   struct scene scene = scene_box(40, 30, 0.05, SIDES_CLOSED);
