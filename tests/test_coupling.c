@@ -664,3 +664,33 @@ Test(stability, a_disc_whose_rim_passes_mach_0_6_is_refused_whichever_way_it_spi
     scene_clear(&scene);
   }
 }
+
+Test(motion, discs_start_as_the_case_says_with_the_mass_and_the_inertia_of_discs)
+{
+  struct scene scene = scene_box(60, 50, 0.1, SIDES_CLOSED);
+  const double radius = 4.2, density = 2.5;
+  *scene_add_disc(&scene, radius, density, 0, 0) = (struct disc_spec){.radius = radius,
+                                                                      .density = density,
+                                                                      .position = {20.3, 30.7},
+                                                                      .velocity = {0.01, -0.02},
+                                                                      .angle = 0.7,
+                                                                      .spin = -0.003};
+  struct simulation *simulation = start(&scene);
+  const struct discs *d = simulation_discs(simulation);
+  cr_expect(d->x[0] == 20.3 && d->y[0] == 30.7 && d->angle[0] == 0.7, "at (%g, %g), angle %g", d->x[0], d->y[0],
+            d->angle[0]);
+  cr_expect(d->vx[0] == 0.01 && d->vy[0] == -0.02 && d->omega[0] == -0.003);
+  const double area = M_PI * radius * radius;
+  cr_expect_float_eq(d->mass[0], density * area, 1e-12);
+  cr_expect_float_eq(d->fluid_mass[0], area, 1e-12);
+  cr_expect_float_eq(d->inertia[0], density * area * radius * radius / 2, 1e-11);
+  cr_expect_float_eq(d->fluid_inertia[0], area * radius * radius / 2, 1e-11);
+  const double before = d->omega[0];
+  advance(simulation, 1);
+  cr_expect_float_eq(d->angle[0], 0.7 + d->omega[0], 1e-15, "turns by its new spin");
+  cr_expect_float_eq(d->x[0], 20.3 + d->vx[0], 1e-14, "moves by its new velocity");
+  cr_expect_float_eq(d->y[0], 30.7 + d->vy[0], 1e-14, "moves by its new velocity");
+  cr_expect_neq(d->omega[0], before);
+  simulation_destroy(simulation);
+  scene_clear(&scene);
+}

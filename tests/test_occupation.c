@@ -287,12 +287,13 @@ Test(occupation, edges_on_grid_lines_but_for_round_off_are_painted_like_any_othe
   end(&p);
 }
 
-Test(occupation, runs_know_where_their_cells_lie_from_the_centre)
+static void check_runs(int reach)
 {
   struct painting p = {.scene = scene_box(37, 41, 0.05, SIDES_PERIODIC)};
   scene_add_disc(&p.scene, 8.3, 2, 1.7, 40.2);
   scene_add_disc(&p.scene, 3, 2, 36.9, 20.5);
-  begin(&p, 1);
+  scene_add_disc(&p.scene, 4.2, 2, 21.6, 18.3); /* clear of all sides */
+  begin(&p, reach);
   paint(&p);
   for (int y = 0; y < 41; y++) {
     size_t count;
@@ -301,11 +302,17 @@ Test(occupation, runs_know_where_their_cells_lie_from_the_centre)
       if (row[r].n == 0) continue;
       double corner[2];
       corner_of(&p, row[r].disc, row[r].x, y, corner);
-      cr_expect_float_eq(row[r].rx, corner[0] + 0.5, 1e-13);
-      cr_expect_float_eq(row[r].ry, corner[1] + 0.5, 1e-13);
+      cr_expect_float_eq(row[r].rx, corner[0] + 0.5, 1e-13, "reach %d, disc %u, row %d", reach, row[r].disc, y);
+      cr_expect_float_eq(row[r].ry, corner[1] + 0.5, 1e-13, "reach %d, disc %u, row %d", reach, row[r].disc, y);
     }
   }
   end(&p);
+}
+
+Test(occupation, runs_know_where_their_cells_lie_from_the_centre)
+{
+  check_runs(0);
+  check_runs(1);
 }
 
 /* Discs of radii from 0.5 to `largest` all over the box. */
@@ -326,12 +333,14 @@ static double into_box(const struct painting *p, int axis, double at)
   return at >= size ? at - size : at;
 }
 
-/* Most discs move by part of a cell, some jump, some rest, some fall upon a grid line or another's abscissa. */
+/* Most discs move by part of a cell, some jump, some rest, of these some at another spin, some fall upon a grid line or
+ * another's abscissa. */
 static void stir(struct painting *p, gsl_rng *random)
 {
   struct discs *d = &p->discs;
   for (size_t i = 0; i < d->count; i++) {
     const double kind = gsl_rng_uniform(random), most = kind < 0.1 ? 6 : 0.3;
+    if (kind > 0.95) d->omega[i] = 0.3 / d->radius[i] * gsl_rng_uniform(random);
     if (kind > 0.8) continue;
     d->x[i] = into_box(p, 0, d->x[i] + most * (2 * gsl_rng_uniform(random) - 1));
     d->y[i] = into_box(p, 1, d->y[i] + most * (2 * gsl_rng_uniform(random) - 1));
@@ -390,6 +399,7 @@ static const char *compare_with_fresh(const struct painting *p)
   begin(&fresh, p->occupation.reach);
   memcpy(fresh.discs.x, p->discs.x, p->discs.count * sizeof(double));
   memcpy(fresh.discs.y, p->discs.y, p->discs.count * sizeof(double));
+  memcpy(fresh.discs.omega, p->discs.omega, p->discs.count * sizeof(double));
   paint(&fresh);
   const char *difference = compare(&p->occupation, &fresh.occupation);
   fresh.scene = (struct scene){0}; /* is p's */
@@ -491,6 +501,7 @@ static void check_threads(enum sides sides, int reach, unsigned long seed)
     for (int k = 0; k < TEAMS; k++) {
       memcpy(p[k].discs.x, p[0].discs.x, p[0].discs.count * sizeof(double));
       memcpy(p[k].discs.y, p[0].discs.y, p[0].discs.count * sizeof(double));
+      memcpy(p[k].discs.omega, p[0].discs.omega, p[0].discs.count * sizeof(double));
       paint_by_threads(&p[k], threads[k]);
       const char *difference = compare(&p[0].occupation, &p[k].occupation);
       cr_assert_null(difference, "seed %lu, reach %d, step %d, %d threads: %s differ", seed, reach, step, threads[k],
