@@ -744,3 +744,31 @@ Test(contacts, too_stiff_to_be_followed_are_refused_by_any_number_of_threads)
   expect_refusal(&crowd, 4);
   scene_clear(&crowd);
 }
+
+/* Discs that are put where they overlap hold the energy of that contact, and part by it; no faster than it allows. */
+Test(contacts, that_are_there_at_the_start_push_apart_with_the_energy_they_hold)
+{
+  for (int wall = 0; wall < 2; wall++)
+    for (int stiff = 0; stiff < 2; stiff++) {
+      struct scene scene = scene_box(80, 60, 0.01, SIDES_CLOSED);
+      const double radius = 8, overlap = 0.5, density = 20, mass = density * M_PI * radius * radius;
+      scene.contact.stiffness = stiff ? 20 : 2;
+      scene.contact.damping = 0;
+      scene_add_disc(&scene, radius, density, wall ? radius - overlap : 30.2, 30.1);
+      if (!wall) scene_add_disc(&scene, radius, density, 30.2 + 2 * radius - overlap, 30.1);
+      struct simulation *simulation = start(&scene);
+      const struct discs *d = simulation_discs(simulation);
+      /* of the small overlap's law, alpha k c delta^1.5, over the overlap; each disc of a pair takes half */
+      const double c = lens_small(radius, wall ? INFINITY : radius), force = 0.3 * scene.contact.stiffness * c;
+      const double energy = 0.4 * force * pow(overlap, 2.5), most = sqrt(2 * (wall ? energy : energy / 2) / mass);
+      double fastest = 0;
+      for (int step = 0; step < 400; step++) {
+        advance(simulation, 1);
+        fastest = fmax(fastest, fabs(d->vx[0]));
+      }
+      cr_expect(fastest > 0.7 * most && fastest < 1.05 * most, "wall %d, stiff %d: %g of %g", wall, stiff, fastest,
+                most);
+      simulation_destroy(simulation);
+      scene_clear(&scene);
+    }
+}

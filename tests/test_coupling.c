@@ -694,3 +694,38 @@ Test(motion, discs_start_as_the_case_says_with_the_mass_and_the_inertia_of_discs
   simulation_destroy(simulation);
   scene_clear(&scene);
 }
+
+/* Fluid at rest but for one cell. */
+struct odd_cell {
+  int x, y;
+  struct flow_state state;
+};
+
+static struct flow_state but_for_one(const void *context, int x, int y)
+{
+  const struct odd_cell *odd = context;
+  return x == odd->x && y == odd->y ? odd->state : (struct flow_state){.density = 1};
+}
+
+Test(stability, a_cell_that_is_not_finite_or_has_no_mass_is_named_wherever_it_is)
+{
+  static const struct odd_cell cells[] = {{0, 0, {.density = NAN}},
+                                          {36, 129, {.density = 1, .velocity = {NAN, 0}}},
+                                          {69, 100, {.density = 1, .velocity = {0, INFINITY}}},
+                                          {5, 64, {.density = -0.5}},
+                                          {68, 65, {.density = INFINITY}}};
+  for (size_t k = 0; k < sizeof cells / sizeof cells[0]; k++)
+    for (int threads = 1; threads <= 2; threads++) {
+      struct scene scene = scene_box(70, 130, 0.1, SIDES_PERIODIC);
+      struct status status;
+      char expected[64];
+      omp_set_num_threads(threads);
+      struct simulation *simulation = start(&scene);
+      simulation_start(simulation, but_for_one, &cells[k]);
+      cr_expect_not(simulation_check(simulation, &status), "case %zu", k);
+      snprintf(expected, sizeof expected, "cell (%d, %d) is no longer finite", cells[k].x, cells[k].y);
+      cr_expect(strstr(status.message, expected), "%s, not %s", status.message, expected);
+      simulation_destroy(simulation);
+      scene_clear(&scene);
+    }
+}

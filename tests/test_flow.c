@@ -60,6 +60,36 @@ Test(channel, couette_flow_is_linear_between_moving_walls)
   scene_clear(&scene);
 }
 
+/* A tenth of the sides' speed per cell, rows or columns from 0 on. */
+static struct flow_state shear(const void *context, int x, int y)
+{
+  const int along_x = *(const int *)context;
+  struct flow_state state = {.density = 1};
+  state.velocity[along_x ? 0 : 1] = 0.001 * ((along_x ? y : x) + 0.5);
+  state.gradient[along_x ? 0 : 1][along_x ? 1 : 0] = 0.001;
+  return state;
+}
+
+Test(channel, couette_flow_that_starts_with_its_stress_is_steady_at_once)
+{
+  for (int along_x = 0; along_x < 2; along_x++) {
+    struct scene scene = channel(10, 0.1, along_x);
+    scene.domain.side[along_x ? SIDE_TOP : SIDE_RIGHT].velocity[along_x ? 0 : 1] = 0.01;
+    struct simulation *simulation = start(&scene);
+    simulation_start(simulation, shear, &along_x);
+    for (int step = 0; step < 3; step++) {
+      double u[30];
+      advance(simulation, 1);
+      simulation_fields(simulation, NULL, along_x ? u : NULL, along_x ? NULL : u);
+      for (int k = 0; k < 10; k++)
+        cr_expect_float_eq(u[along_x ? 3 * k + 1 : k + 10], 0.001 * (k + 0.5), 1e-8, "step %d, cell %d: %.10g", step, k,
+                           u[along_x ? 3 * k + 1 : k + 10]);
+    }
+    simulation_destroy(simulation);
+    scene_clear(&scene);
+  }
+}
+
 /* Runs until the mean velocity changes by less than 1e-6 over 200 steps; K = F/(mu U). */
 static double square_array_drag(const struct scene *scene, double *reported)
 {

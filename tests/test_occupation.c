@@ -1,4 +1,5 @@
 /* Occupation: how much of each cell each disc covers, who shares a cell, and who is near whom. */
+#include "contact/linked_cell.h"
 #include "contact/overlap.h"
 #include "scenes.h"
 #include "solid/disc_area.h"
@@ -740,4 +741,46 @@ Test(occupation, with_reach_neighbours_along_the_grid_are_found_across_periodic_
     }
   overlap_destroy(&pairs);
   end(&p);
+}
+
+/* All pairs whose gap is below the skin, each once with its lower index first, in order. */
+static void check_linked_cells(enum sides sides, double edge, unsigned long seed)
+{
+  const double skin = 0.5;
+  gsl_rng *random = random_from(seed);
+  struct painting p = {.scene = scene_box(61, 47, 0.02, sides)};
+  struct linked_cell linked;
+  struct pair_list pairs;
+  struct status status;
+  struct team team = {0};
+  scatter(&p.scene, 120, 3, random);
+  begin(&p, 0);
+  cr_assert(overlap_create(&pairs, p.discs.count, &status));
+  cr_assert(linked_cell_create(&linked, &p.scene, &p.discs, edge, skin, &status));
+  cr_assert(linked_cell_find(&linked, &p.discs, &pairs, &team));
+  size_t at = 0;
+  for (uint32_t a = 0; a < p.discs.count; a++)
+    for (uint32_t b = a + 1; b < p.discs.count; b++) {
+      const double dx = nearest(&p, 0, p.discs.x[b] - p.discs.x[a]), dy = nearest(&p, 1, p.discs.y[b] - p.discs.y[a]);
+      if (hypot(dx, dy) >= p.discs.radius[a] + p.discs.radius[b] + skin) continue;
+      cr_assert(at < pairs.count && pairs.pairs[at].a == a && pairs.pairs[at].b == b,
+                "sides %d, edge %g, seed %lu: pair %zu is not %u, %u", sides, edge, seed, at, a, b);
+      at++;
+    }
+  cr_expect_eq(at, pairs.count, "sides %d, edge %g, seed %lu: %zu pairs, not %zu", sides, edge, seed, pairs.count, at);
+  cr_expect_gt(at, 50, "%zu pairs show little", at);
+  linked_cell_destroy(&linked);
+  overlap_destroy(&pairs);
+  end(&p);
+  gsl_rng_free(random);
+}
+
+Test(linked_cells, find_each_pair_that_is_near_once_and_in_order)
+{
+  static const double edges[] = {0, 1.5, 3, 8, 25};
+  for (size_t k = 0; k < sizeof edges / sizeof edges[0]; k++)
+    for (unsigned long seed = 1; seed <= 4; seed++) {
+      check_linked_cells(SIDES_PERIODIC, edges[k], seed);
+      check_linked_cells(SIDES_CLOSED, edges[k], seed);
+    }
 }
