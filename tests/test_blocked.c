@@ -136,6 +136,38 @@ Test(blocked, a_run_gives_the_same_bits_with_any_plan)
   free(other);
 }
 
+/* Velocity after 100 steps of a low, wide box, of which each of several threads has few rows. */
+static void low_box(bool periodic, int depth, int threads, double *ux)
+{
+  struct scene scene = scene_box(1000, 25, 0.05, SIDES_CLOSED);
+  struct simulation *simulation;
+  struct status status;
+  if (periodic) scene.domain.side[SIDE_BOTTOM].type = scene.domain.side[SIDE_TOP].type = SIDE_PERIODIC;
+  scene.domain.side[SIDE_TOP].velocity[0] = periodic ? 0 : 0.1;
+  scene.domain.side[SIDE_LEFT].velocity[1] = 0.05;
+  scene.run.plan.depth = depth;
+  omp_set_num_threads(threads);
+  cr_assert(simulation_create(&simulation, &scene, &status), "%s", status.message);
+  cr_assert(simulation_advance(simulation, 100, &status), "%s", status.message);
+  simulation_fields(simulation, NULL, ux, NULL);
+  simulation_destroy(simulation);
+}
+
+Test(blocked, a_plan_deeper_than_the_rows_of_a_thread_allow_gives_the_same_bits)
+{
+  static double expected[1000 * 25], obtained[1000 * 25];
+  for (int periodic = 0; periodic < 2; periodic++) {
+    low_box(periodic, 1, 1, expected);
+    for (int threads = 1; threads <= 5; threads += 2) {
+      low_box(periodic, 40, threads, obtained);
+      cr_expect_eq(memcmp(expected, obtained, sizeof expected), 0, "periodic %d, %d threads", periodic, threads);
+      low_box(periodic, 0, threads, obtained);
+      cr_expect_eq(memcmp(expected, obtained, sizeof expected), 0, "by trial, periodic %d, %d threads", periodic,
+                   threads);
+    }
+  }
+}
+
 Test(single, precision_stays_within_1e_4_of_double_in_a_cavity)
 {
   const size_t cells = 160 * 160;

@@ -729,3 +729,22 @@ Test(stability, a_cell_that_is_not_finite_or_has_no_mass_is_named_wherever_it_is
       scene_clear(&scene);
     }
 }
+
+Test(stability, a_free_disc_that_its_contact_cannot_hold_in_the_box_is_named_with_the_key_to_change)
+{
+  static const double gravity[SIDE_COUNT][2] = {{-3e-4, 0}, {3e-4, 0}, {0, -3e-4}, {0, 3e-4}};
+  for (int side = 0; side < SIDE_COUNT; side++) {
+    struct scene scene = scene_box(30, 30, 0.1, SIDES_CLOSED);
+    struct status status;
+    scene.contact.stiffness = 1e-9;
+    scene_add_disc(&scene, 3, 20, 15, 15);
+    memcpy(scene.particles.gravity, gravity[side], sizeof scene.particles.gravity);
+    struct simulation *simulation = start(&scene);
+    cr_assert_not(simulation_advance(simulation, 5000, &status));
+    cr_expect(strstr(status.message, "disc 0 near") && strstr(status.message, "pushed out of the box") &&
+                  strstr(status.message, "contact.stiffness, 1e-09"),
+              "%s", status.message);
+    simulation_destroy(simulation);
+    scene_clear(&scene);
+  }
+}
