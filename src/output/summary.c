@@ -21,7 +21,7 @@ struct figure {
   double real;
 };
 
-enum { FIGURES_MAX = 27 + STAGE_COUNT };
+enum { FIGURES_MAX = 29 + STAGE_COUNT };
 
 struct figures {
   size_t count;
@@ -102,6 +102,8 @@ static struct figures figures_of(const struct summary *summary)
     add_real(&figures, stage_name((enum stage)stage), report->times.seconds[stage])->group = "stages";
   add_real(&figures, "mass_drift", report->mass_drift);
   add_real(&figures, "momentum_drift", report->momentum_drift);
+  add_real(&figures, "mean_ux", report->mean_velocity[0]);
+  add_real(&figures, "mean_uy", report->mean_velocity[1]);
   add_real(&figures, "max_mach", report->max_mach);
   add_integer(&figures, "max_substeps", report->max_substeps);
   add_real(&figures, "peak_rss_mib", memory_peak_mib());

@@ -456,13 +456,18 @@ static double momentum_drift(struct simulation *s)
 void simulation_report(struct simulation *s, struct simulation_report *report)
 {
   const double cells = (double)s->scene->domain.size[0] * s->scene->domain.size[1];
+  const struct fluid_totals totals = diagnostics_totals(&s->flow.populations);
+  const struct fluid_force force = flow_force(&s->flow);
+  const double mass = cells + totals.excess_mass, momentum[2] = {totals.jx, totals.jy};
   *report = (struct simulation_report){.threads = threads_for(scene_cells(s->scene)),
                                        .kernel = s->flow.kernel->name,
                                        .times = s->times,
-                                       .mass_drift = fabs(diagnostics_totals(&s->flow.populations).excess_mass) / cells,
+                                       .mass_drift = fabs(totals.excess_mass) / cells,
                                        .momentum_drift = momentum_drift(s),
                                        .max_mach = s->max_mach,
                                        .max_substeps = s->plan.exchange ? s->contacts.most_substeps : 1};
+  for (int axis = 0; axis < 2; axis++) /* with half of the force of the coming step, as in the fields */
+    report->mean_velocity[axis] = (momentum[axis] + (mass * force.mass[axis] + cells * force.uniform[axis]) / 2) / mass;
   tuning_text(&s->tuning, report->plan);
   threads_binding(report->binding);
 }
