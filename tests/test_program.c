@@ -158,11 +158,34 @@ Test(program, analyse_reports_a_run_and_refuses_what_is_none)
   cr_assert_eq(shell("%s analyse o --json o/analysis.json --tables >out 2>err", DELBM), 0);
   cr_expect(contains("out", "settling.interface_speed") && !contains("out", "body.") && !contains("out", "pair."));
   cr_expect(contains("o/analysis.json", "\"interface_speed\": ") && contains("o/analysis.json", "\"mixing\": ["));
-  cr_expect_eq(shell("test $(wc -l <o/settling.csv) = 8 && grep -q '^step,height,concentration$' o/profile.csv"), 0);
+  cr_expect_eq(shell("test $(wc -l <o/settling.csv) = 8 && grep -q '^step,height,concentration,lambda$' o/profile.csv"),
+               0);
   cr_expect_eq(shell("%s analyse absent 2>err", DELBM), 4);
   cr_expect_eq(shell("%s analyse 2>err", DELBM), 2);
   cr_expect_eq(shell("echo nonsense >o/particles.csv; %s analyse o 2>err", DELBM), 3);
   cr_expect(contains("err", "o/particles.csv:1: not a table of discs"));
+}
+
+/* Fluid that a force drives through a square array of solid fraction 0.2: K = F/(rho nu U) is 51.53 (Sangani & Acrivos
+ * 1982), U being the mean velocity over all of the cell. */
+Test(program, analyse_finds_the_drag_of_an_array_from_force_and_mean_velocity)
+{
+  shell_write("array.yaml",
+              "domain: {size: [20, 20], left: periodic, right: periodic, bottom: periodic, top: periodic}\n"
+              "fluid: {viscosity: 0.1667, force: [0, -1e-6]}\n"
+              "particles: {discs: [{radius: 5.0463, position: [10, 10], fixed: true}]}\n"
+              "run: {steps: 6000}\n");
+  cr_assert_eq(shell("%s run array.yaml --quiet --out o >/dev/null && %s analyse o >out", DELBM, DELBM), 0);
+  cr_expect_eq(
+      shell("awk '$1 == \"body.resistance\" { k = $2 } END { exit !(k > 0.98 * 51.53 && k < 1.02 * 51.53) }' out"), 0);
+  cr_expect(contains("out", "relative to the mean velocity of the fluid") && !contains("out", "not steady"));
+  /* a run that was cut short says that it is not steady, one without an end that U is unknown */
+  cr_assert_eq(shell("%s run array.yaml --set run.steps=200 --set output.every=10 --quiet --out o >/dev/null && "
+                     "%s analyse o >out && rm o/run.json && %s analyse o >out2",
+                     DELBM, DELBM, DELBM),
+               0);
+  cr_expect(contains("out", "not steady"));
+  cr_expect(contains("out2", "the mean velocity of the fluid is unknown") && !contains("out2", "body.drag"));
 }
 
 Test(program, an_interrupted_run_ends_in_order)

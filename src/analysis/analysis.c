@@ -1,7 +1,10 @@
 #include "analysis/analysis.h"
 
+#include "output/file.h"
+
 #include <inttypes.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* One figure of the report. */
@@ -26,20 +29,28 @@ static void add(struct figures *f, const char *part, const char *name, double va
 
 static void add_body(struct figures *f, const struct body *b)
 {
-  add(f, "body", "first_step", (double)b->first, "steps", "start of the window that means are taken over");
-  add(f, "body", "last_step", (double)b->last, "steps", "its end");
-  add(f, "body", "speed", b->speed.mean, "cells/step", b->held ? "of the stream" : "terminal velocity");
-  if (!b->held) add(f, "body", "speed_spread", b->speed.deviation, "cells/step", "standard deviation of that");
+  const bool held = b->held;
+  if (isfinite(b->speed.mean)) {
+    add(f, "body", "first_step", (double)b->first, "steps", "start of the window that means are taken over");
+    add(f, "body", "last_step", (double)b->last, "steps", "its end");
+  }
+  add(f, "body", "speed", b->speed.mean, "cells/step", held ? "U, of the fluid relative to the disc" : "terminal, U");
+  if (!held) add(f, "body", "speed_spread", b->speed.deviation, "cells/step", "standard deviation of that");
+  if (isfinite(b->fastest)) {
+    add(f, "body", "fastest", b->fastest, "cells/step", "largest speed along gravity's axis");
+    add(f, "body", "fastest_step", (double)b->fastest_step, "steps", "when");
+  }
   add(f, "body", "reynolds", b->reynolds, "-", "2 U R/nu");
-  add(f, "body", "drag", b->drag, "-", b->held ? "C_D = F/(rho U^2 R)" : "C_D = pi R g (rho_s - rho)/(rho U^2)");
+  add(f, "body", "drag", b->drag, "-", held ? "C_D = F/(rho U^2 R)" : "C_D = pi R g (rho_s - rho)/(rho U^2)");
   add(f, "body", "drag_printed", b->drag_printed, "-", "8 R g (rho_s - rho)/(3 rho U^2), as the paper prints it");
   add(f, "body", "drag_spread", b->drag_spread, "-", "standard deviation of C_D");
+  add(f, "body", "resistance", b->resistance, "-", "K = F/(rho nu U)");
   add(f, "body", "lift", b->lift.mean, "-", "C_L = F/(rho U^2 R)");
   add(f, "body", "lift_spread", b->lift.deviation, "-", "standard deviation of C_L");
   add(f, "body", "torque", b->torque.mean, "-", "C_M = T/(rho U^2 R^2)");
   add(f, "body", "spin", b->spin, "-", "omega R/U");
   add(f, "body", "strouhal", b->strouhal, "-", "2 f R/U of the shedding");
-  add(f, "body", "swing", b->swing, "-", b->held ? "amplitude of C_L" : "amplitude of the lateral velocity over U");
+  add(f, "body", "swing", b->swing, "-", held ? "amplitude of C_L" : "amplitude of the lateral velocity over U");
 }
 
 static void add_pair(struct figures *f, const struct pair *p)
@@ -74,8 +85,13 @@ static void add_settling(struct figures *f, const struct settling *s)
   add(f, "settling", "bed", s->bed, "-", "concentration of the bed at the end");
   add(f, "settling", "interface_start", s->interface[0], "cells", "height of the interface at the start");
   add(f, "settling", "interface_end", s->interface[last], "cells", "height of the interface at the end");
-  add(f, "settling", "mixing_start", s->mixing[0], "-", "mixing index at the start");
-  add(f, "settling", "mixing_end", s->mixing[last], "-", "mixing index at the end");
+  add(f, "settling", "mixing_start", s->mixing[0], "-", "Lacey's mixing index of five bands at the start");
+  add(f, "settling", "mixing_end", s->mixing[last], "-", "the same at the end");
+  add(f, "settling", "lambda_bed_slope", s->lambda_bed.slope, "-",
+      "mixing index (25) over height/box height in the sediment at the end");
+  add(f, "settling", "lambda_bed_r2", s->lambda_bed.r2, "-", "R^2 of that line");
+  add(f, "settling", "lambda_above_slope", s->lambda_above.slope, "-",
+      "the same above the sediment, when the interface has fallen half of its way");
   add(f, "settling", "fastest_end", s->restless, "cells/step", "fastest disc at the end");
 }
 
@@ -88,19 +104,30 @@ static struct figures figures_of(const struct analysis *a)
   return figures;
 }
 
-bool analysis_create(struct analysis *a, const struct scene *scene, const char *path, struct status *status)
+static bool analyse_parts(struct analysis *a, const double mean[2], struct status *status)
 {
-  *a = (struct analysis){.scene = scene};
-  bool ok = history_read(&a->history, path, scene->particles.count, status);
-  if (ok && body_applies(scene)) {
+  const struct scene *scene = a->scene;
+  bool ok = true;
+  if (body_applies(scene)) {
     a->has_body = true;
-    ok = body_analyse(&a->body, scene, &a->history, status);
+    ok = body_analyse(&a->body, scene, mean, &a->history, status);
   }
   if (ok && pair_applies(scene)) {
     a->has_pair = true;
     a->pair = pair_analyse(scene, &a->history);
   }
   if (ok && settling_applies(scene)) a->has_settling = ok = settling_create(&a->settling, scene, &a->history, status);
+  return ok;
+}
+
+bool analysis_create(struct analysis *a, const struct scene *scene, const char *directory, struct status *status)
+{
+  double mean[2];
+  *a = (struct analysis){.scene = scene};
+  char *table = file_join(directory, "particles.csv", status);
+  const bool ok = table && history_read(&a->history, table, scene->particles.count, status) &&
+                  ambient_read_mean(directory, mean, status) && analyse_parts(a, mean, status);
+  free(table);
   if (!ok) analysis_destroy(a);
   return ok;
 }
@@ -112,12 +139,19 @@ void analysis_destroy(struct analysis *a)
   *a = (struct analysis){0};
 }
 
+static void print_remarks(const struct body *b, FILE *stream)
+{
+  fprintf(stream, "# body: speed is relative to %s\n", ambient_name(b->relative));
+  if (*b->note) fprintf(stream, "# body: %s\n", b->note);
+}
+
 void analysis_print(const struct analysis *a, FILE *stream)
 {
   const struct figures figures = figures_of(a);
   const struct history *h = &a->history;
   fprintf(stream, "# %zu discs, %zu snapshots, steps %" PRId64 " to %" PRId64 "\n", h->discs, h->snapshots, h->step[0],
           h->step[h->snapshots - 1]);
+  if (a->has_body) print_remarks(&a->body, stream);
   for (const struct figure *k = figures.items; k < figures.items + figures.count; k++) {
     char name[64];
     snprintf(name, sizeof name, "%s.%s", k->part, k->name);
@@ -125,10 +159,21 @@ void analysis_print(const struct analysis *a, FILE *stream)
   }
 }
 
+static void json_number(double value, FILE *stream)
+{
+  if (isfinite(value))
+    fprintf(stream, "%.17g", value);
+  else
+    fputs("null", stream);
+}
+
 static void json_array(const char *name, const double *values, size_t count, FILE *stream)
 {
   fprintf(stream, ",\n    \"%s\": [", name);
-  for (size_t k = 0; k < count; k++) fprintf(stream, "%s%.17g", k ? ", " : "", values[k]);
+  for (size_t k = 0; k < count; k++) {
+    if (k) fputs(", ", stream);
+    json_number(values[k], stream);
+  }
   fputs("]", stream);
 }
 
@@ -140,42 +185,66 @@ static void json_series(const struct settling *s, FILE *stream)
   json_array("interface", s->interface, s->snapshots, stream);
   json_array("front", s->front, s->snapshots, stream);
   json_array("mixing", s->mixing, s->snapshots, stream);
-  json_array("layers", s->layer[0], s->snapshots * SETTLING_LAYERS, stream);
-  json_array("profile", s->concentration + (s->snapshots - 1) * s->slabs, s->slabs, stream);
+  json_array("layers", s->band[0], s->snapshots * SETTLING_BANDS, stream);
+  json_array("profile", s->concentration + (s->snapshots - 1) * s->layers, s->layers, stream);
+  json_array("lambda", s->lambda + (s->snapshots - 1) * s->layers, s->layers, stream);
+}
+
+/* Opens the object of a part and writes its figures. */
+static void json_figures(const struct figures *figures, const char *part, bool first, FILE *stream)
+{
+  bool starts = true;
+  fprintf(stream, "%s\n  \"%s\": {", first ? "" : ",", part);
+  for (const struct figure *k = figures->items; k < figures->items + figures->count; k++) {
+    if (strcmp(k->part, part) != 0) continue;
+    fprintf(stream, "%s\n    \"%s\": ", starts ? "" : ",", k->name);
+    json_number(k->value, stream);
+    starts = false;
+  }
+  if (strcmp(part, "body") == 0) fputs(starts ? "\n    " : ",\n    ", stream);
 }
 
 void analysis_json(const struct analysis *a, FILE *stream)
 {
   const struct figures figures = figures_of(a);
-  const char *part = "";
   fputs("{", stream);
-  for (const struct figure *k = figures.items; k < figures.items + figures.count; k++) {
-    const bool starts = strcmp(k->part, part) != 0;
-    if (starts) fprintf(stream, "%s\n  \"%s\": {", *part ? "\n  }," : "", k->part);
-    fprintf(stream, "%s\n    \"%s\": %.17g", starts ? "" : ",", k->name, k->value);
-    part = k->part;
+  if (a->has_body) {
+    json_figures(&figures, "body", true, stream);
+    fprintf(stream, "\"note\": \"%s\"\n  }", a->body.note);
   }
-  if (a->has_settling) json_series(&a->settling, stream);
-  fputs(*part ? "\n  }\n}\n" : "}\n", stream);
+  if (a->has_pair) {
+    json_figures(&figures, "pair", true, stream);
+    fputs("\n  }", stream);
+  }
+  if (a->has_settling) {
+    json_figures(&figures, "settling", !a->has_pair && !a->has_body, stream);
+    json_series(&a->settling, stream);
+    fputs("\n  }", stream);
+  }
+  fputs("\n}\n", stream);
 }
 
 void analysis_settling_csv(const struct settling *s, FILE *stream)
 {
   fputs("step,interface,front,mixing", stream);
-  for (int k = 1; k <= SETTLING_LAYERS; k++) fprintf(stream, ",layer%d", k);
+  for (int k = 1; k <= SETTLING_BANDS; k++) fprintf(stream, ",layer%d", k);
   fputs("\n", stream);
   for (size_t n = 0; n < s->snapshots; n++) {
     fprintf(stream, "%" PRId64 ",%.17g,%.17g,%.17g", s->step[n], s->interface[n], s->front[n], s->mixing[n]);
-    for (int k = 0; k < SETTLING_LAYERS; k++) fprintf(stream, ",%.17g", s->layer[n][k]);
+    for (int k = 0; k < SETTLING_BANDS; k++) fprintf(stream, ",%.17g", s->band[n][k]);
     fputs("\n", stream);
   }
 }
 
 void analysis_profile_csv(const struct settling *s, FILE *stream)
 {
-  fputs("step,height,concentration\n", stream);
+  fputs("step,height,concentration,lambda\n", stream);
   for (size_t n = 0; n < s->snapshots; n++)
-    for (size_t k = 0; k < s->slabs; k++)
-      fprintf(stream, "%" PRId64 ",%.17g,%.17g\n", s->step[n], ((double)k + 0.5) * s->slab,
-              s->concentration[n * s->slabs + k]);
+    for (size_t l = 0; l < s->layers; l++) {
+      const double lambda = s->lambda[n * s->layers + l];
+      fprintf(stream, "%" PRId64 ",%.17g,%.17g,", s->step[n], settling_height(s, l),
+              s->concentration[n * s->layers + l]);
+      if (!isnan(lambda)) fprintf(stream, "%.17g", lambda);
+      fputs("\n", stream);
+    }
 }

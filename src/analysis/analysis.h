@@ -17,18 +17,20 @@ struct analysis {
   struct settling settling;
 };
 
-/* Analyses the run of `scene` whose table of discs is at `path`. The scene must outlive the analysis. */
-bool analysis_create(struct analysis *analysis, const struct scene *scene, const char *path, struct status *status);
+/* Analyses the run of `scene` in a folder, from particles.csv and, where it is there, run.json. The scene must outlive
+ * the analysis. */
+bool analysis_create(struct analysis *analysis, const struct scene *scene, const char *directory,
+                     struct status *status);
 void analysis_destroy(struct analysis *analysis);
 
-/* One figure a line: part.name, value, unit, meaning. */
+/* One figure a line: part.name, value, unit, meaning. Lines that start with # say what else must be known. */
 void analysis_print(const struct analysis *analysis, FILE *stream);
 
-/* An object of an object for each part; the series of `settling` as arrays. */
+/* An object of an object for each part; the series of `settling` as arrays, null where a layer is empty. */
 void analysis_json(const struct analysis *analysis, FILE *stream);
 
-/* The series of `settling` as CSV: one row a snapshot (step, interface, front, mixing, layer1 ..), or one row a
- * snapshot and slab (step, height, concentration). */
+/* The series of `settling` as CSV: one row a snapshot (step, interface, front, mixing, and as layer1 .. the mean heights
+ * of the bands), or one row a snapshot and layer (step, height, concentration, lambda: empty without discs). */
 void analysis_settling_csv(const struct settling *settling, FILE *stream);
 void analysis_profile_csv(const struct settling *settling, FILE *stream);
 

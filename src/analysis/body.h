@@ -1,38 +1,59 @@
-/* One disc in a stream: drag and lift coefficients, terminal velocity, shedding. U is the speed of the fluid far away
- * relative to the disc, rho = 1 the reference density.
+/* A disc in a stream: drag and lift coefficients, terminal speed, shedding. U is the speed of the ambient fluid relative
+ * to the disc (ambient.h), rho = 1 the reference density, D = 2 R.
  *
- *   free disc   C_D = pi R g (rho_s - rho)/(rho U^2) from its weight, with U the mean of its velocity along gravity; and
- *               beside it as Zhang et al. (2017) print it, 8 R g (rho_s - rho)/(3 rho U^2), which is a sphere's
- *   held disc   C_D = F/(rho U^2 R) from the force along the stream, C_L = F/(rho U^2 R) from that a quarter turn
- *               counter-clockwise from it, C_M = T/(rho U^2 R^2); U from the inlet and the disc's own velocity
- *
- * Means are over a window: of a free disc the second half of its fall, up to ten diameters before a side; of a held one
- * the last quarter of the run. */
+ *   free disc    U is the component along gravity's axis, positive in the sense in which the disc moves through the
+ *                fluid at last. Its terminal value is the mean over a plateau (plateau.h) of at least five diameters of
+ *                way through the fluid, which ends three diameters before a side that the disc approaches. Without a
+ *                plateau there is no terminal speed and no coefficient, and `note` has the reason. C_D = pi R g (rho_s - rho)/(rho U^2) from
+ *                the weight; and beside it as Zhang et al. (2017) print it, 8 R g (rho_s - rho)/(3 rho U^2), a sphere's.
+ *                No C_D where the disc moves against its weight, as on the centre line of a channel whose mean velocity
+ *                is less than the velocity there
+ *   held discs   fixed, or driven at one velocity; means per disc, R the mean radius. U from the ambient fluid and the
+ *                discs' own velocity. C_D = F/(rho U^2 R) from the force along U, C_L = F/(rho U^2 R) from the force a
+ *                quarter turn counter-clockwise from U, C_M = T/(rho U^2 R^2), over the last quarter of the run; and
+ *                K = F/(rho nu U), the drag of slow flow through arrays. A body force on the fluid acts like a
+ *                pressure gradient, and its part in F is counted */
 #ifndef DELBM_ANALYSIS_BODY_H
 #define DELBM_ANALYSIS_BODY_H
 
+#include "analysis/ambient.h"
 #include "analysis/fit.h"
 #include "analysis/history.h"
-#include "scene/scene.h"
 
 /* A wake is steady below this Reynolds number (47 for a fixed cylinder): what oscillates there is not shed. */
 static const double body_steady_below = 47;
 
+/* Of an oscillation within the window: fewer are not told from a drift. */
+static const double body_least_cycles = 3;
+
+/* Diameters: of way that a plateau covers at least, and before the side ahead that are left out. */
+static const double body_least_way = 5, body_side_ahead = 3;
+
 struct body {
   bool held;
-  int64_t first, last;        /* steps of the window */
-  struct spread speed;        /* U, cells/step */
+  char note[192]; /* what a reader of the figures must know; empty: nothing */
+  struct ambient ambient;
+  enum ambient_kind relative; /* what U is relative to */
+  int64_t first, last;        /* steps of the window that means are taken over */
+  struct spread speed;        /* U, cells/step; NAN: no terminal speed */
+  double fastest;             /* largest U; -INFINITY for held discs, and relative to a mean */
+  int64_t fastest_step;       /* when */
   double reynolds;            /* 2 U R/nu */
-  double drag, drag_printed;  /* of means; printed: NAN for a held disc */
+  double drag, drag_printed;  /* of means; printed: NAN for held discs */
   double drag_spread;         /* deviation within the window; NAN for a free disc */
+  double resistance;          /* K; NAN for a free disc */
   struct spread lift, torque; /* coefficients; NAN for a free disc */
   double spin;                /* mean omega R/U */
   double strouhal;            /* 2 f R/U of the lateral velocity, or of the lift; NAN where nothing is shed */
   double swing;               /* amplitude of that: lateral velocity over U, or C_L; NAN likewise */
 };
 
-/* True for a scene with one disc that is free and feels gravity along an axis, or held in a stream. */
+/* True for a scene with one disc that is free and feels gravity along an axis; and for one whose discs are all held, at
+ * one velocity, where an inlet, a force, a wall or the discs themselves make fluid and discs move past each other. */
 bool body_applies(const struct scene *scene);
-bool body_analyse(struct body *body, const struct scene *scene, const struct history *history, struct status *status);
+
+/* `mean` as of ambient_read_mean. */
+bool body_analyse(struct body *body, const struct scene *scene, const double mean[2], const struct history *history,
+                  struct status *status);
 
 #endif

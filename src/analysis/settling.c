@@ -14,10 +14,12 @@ struct work {
   struct settling *to;
   double radius;   /* mean */
   size_t *order;   /* discs by initial height, from the lowest */
-  unsigned *layer; /* of each disc */
+  unsigned *band;  /* of each disc */
+  double *zeta;    /* of each disc */
+  unsigned *count; /* [layers] scratch */
   double *scratch; /* [discs] */
   size_t squares[2];
-  unsigned (*held)[SETTLING_LAYERS]; /* [squares] discs of each layer */
+  unsigned (*held)[SETTLING_BANDS]; /* [squares] discs of each band */
 };
 
 bool settling_applies(const struct scene *scene)
@@ -42,32 +44,63 @@ static double area_below(double radius, double y, double level)
   return lens_of_wall(radius, y - level).area;
 }
 
+/* Area of a layer of the box: the highest one is cut off. */
+static double layer_area(const struct work *w, size_t layer)
+{
+  return fmin(w->to->layer, w->to->box - (double)layer * w->to->layer) * w->scene->domain.size[0];
+}
+
+/* Layer that holds a disc's centre. */
+static size_t layer_of(const struct work *w, size_t snapshot, size_t disc)
+{
+  const double place = history_at(w->history, snapshot, disc, HISTORY_Y) / w->to->layer;
+  return (size_t)fmin(fmax(place, 0), (double)(w->to->layers - 1));
+}
+
 static void add_concentration(const struct work *w, size_t snapshot)
 {
   const struct settling *s = w->to;
-  double *row = s->concentration + snapshot * s->slabs;
-  const double area = s->slab * w->scene->domain.size[0];
+  double *row = s->concentration + snapshot * s->layers;
   for (size_t i = 0; i < w->history->discs; i++) {
     const double r = w->scene->particles.discs[i].radius, y = history_at(w->history, snapshot, i, HISTORY_Y);
-    const double first = fmax(0, floor((y - r) / s->slab));
-    double below = area_below(r, y, first * s->slab);
-    for (size_t k = (size_t)first; k < s->slabs && (double)k * s->slab < y + r; k++) {
-      const double next = area_below(r, y, (double)(k + 1) * s->slab);
-      row[k] += (next - below) / area;
+    const double first = fmax(0, floor((y - r) / s->layer));
+    double below = area_below(r, y, first * s->layer);
+    for (size_t k = (size_t)first; k < s->layers && (double)k * s->layer < y + r; k++) {
+      const double next = area_below(r, y, (double)(k + 1) * s->layer);
+      row[k] += (next - below) / layer_area(w, k);
       below = next;
     }
   }
 }
 
-static void add_layers(const struct work *w, size_t snapshot)
+/* zeta = l_0/N_l of each disc, l counted from 1. */
+static void assign_zeta(struct work *w)
 {
-  unsigned count[SETTLING_LAYERS] = {0};
-  double *mean = w->to->layer[snapshot];
+  for (size_t i = 0; i < w->history->discs; i++) w->zeta[i] = (double)(layer_of(w, 0, i) + 1) / (double)w->to->layers;
+}
+
+static void add_lambda(const struct work *w, size_t snapshot)
+{
+  const size_t layers = w->to->layers;
+  double *row = w->to->lambda + snapshot * layers;
+  for (size_t l = 0; l < layers; l++) w->count[l] = 0;
   for (size_t i = 0; i < w->history->discs; i++) {
-    mean[w->layer[i]] += history_at(w->history, snapshot, i, HISTORY_Y);
-    count[w->layer[i]]++;
+    const size_t l = layer_of(w, snapshot, i);
+    row[l] += w->zeta[i];
+    w->count[l]++;
   }
-  for (int k = 0; k < SETTLING_LAYERS; k++) mean[k] /= count[k];
+  for (size_t l = 0; l < layers; l++) row[l] = w->count[l] > 0 ? row[l] / w->count[l] : NAN;
+}
+
+static void add_bands(const struct work *w, size_t snapshot)
+{
+  unsigned count[SETTLING_BANDS] = {0};
+  double *mean = w->to->band[snapshot];
+  for (size_t i = 0; i < w->history->discs; i++) {
+    mean[w->band[i]] += history_at(w->history, snapshot, i, HISTORY_Y);
+    count[w->band[i]]++;
+  }
+  for (int k = 0; k < SETTLING_BANDS; k++) mean[k] /= count[k];
 }
 
 static size_t square_of(const struct work *w, size_t snapshot, size_t disc)
@@ -83,18 +116,18 @@ static size_t square_of(const struct work *w, size_t snapshot, size_t disc)
 static double mixing_of(const struct work *w, size_t snapshot)
 {
   const size_t squares = w->squares[0] * w->squares[1];
-  const double discs = (double)w->history->discs, p = 1.0 / SETTLING_LAYERS;
+  const double discs = (double)w->history->discs, p = 1.0 / SETTLING_BANDS;
   double variance = 0, filled = 0;
   for (size_t q = 0; q < squares; q++)
-    for (int k = 0; k < SETTLING_LAYERS; k++) w->held[q][k] = 0;
-  for (size_t i = 0; i < w->history->discs; i++) w->held[square_of(w, snapshot, i)][w->layer[i]]++;
+    for (int k = 0; k < SETTLING_BANDS; k++) w->held[q][k] = 0;
+  for (size_t i = 0; i < w->history->discs; i++) w->held[square_of(w, snapshot, i)][w->band[i]]++;
   for (size_t q = 0; q < squares; q++) {
     unsigned all = 0;
-    for (int k = 0; k < SETTLING_LAYERS; k++) all += w->held[q][k];
+    for (int k = 0; k < SETTLING_BANDS; k++) all += w->held[q][k];
     if (all == 0) continue;
     filled++;
-    for (int k = 0; k < SETTLING_LAYERS; k++)
-      variance += all / discs * (w->held[q][k] / (double)all - p) * (w->held[q][k] / (double)all - p) / SETTLING_LAYERS;
+    for (int k = 0; k < SETTLING_BANDS; k++)
+      variance += all / discs * (w->held[q][k] / (double)all - p) * (w->held[q][k] / (double)all - p) / SETTLING_BANDS;
   }
   /* each filled square adds p (1 - p)/n_q times its weight n_q/N: chance leaves p (1 - p) filled/N */
   const double apart = p * (1 - p), chance = apart * filled / discs;
@@ -104,19 +137,20 @@ static double mixing_of(const struct work *w, size_t snapshot)
 /* Height at which a profile, coming from below the interface downwards, first reaches `level`. */
 static double height_of(const struct settling *s, size_t snapshot, double level)
 {
-  const double *row = s->concentration + snapshot * s->slabs;
-  size_t k = (size_t)fmin(s->interface[snapshot] / s->slab, (double)(s->slabs - 1));
+  const double *row = s->concentration + snapshot * s->layers;
+  size_t k = (size_t)fmin(s->interface[snapshot] / s->layer, (double)(s->layers - 1));
   while (k > 0 && row[k] < level) k--;
-  if (row[k] < level || k + 1 >= s->slabs) return k ? (double)s->slabs * s->slab : 0;
+  if (row[k] < level) return 0;
+  if (k + 1 >= s->layers) return s->box;
   const double share = row[k] > row[k + 1] ? (row[k] - level) / (row[k] - row[k + 1]) : 0;
-  return ((double)k + 0.5 + fmin(fmax(share, 0), 1)) * s->slab;
+  return settling_height(s, k) + fmin(fmax(share, 0), 1) * s->layer;
 }
 
 static double bed_of(const struct settling *s)
 {
-  const double *row = s->concentration + (s->snapshots - 1) * s->slabs;
-  const double top = s->interface[s->snapshots - 1] / s->slab;
-  const size_t first = (size_t)(0.25 * top), end = (size_t)(0.75 * top) + 1;
+  const double *row = s->concentration + (s->snapshots - 1) * s->layers;
+  const double top = s->interface[s->snapshots - 1] / s->layer;
+  const size_t first = (size_t)(0.25 * top), end = (size_t)fmax(ceil(0.75 * top), (double)(first + 1));
   return fit_spread(row + first, end - first).mean;
 }
 
@@ -150,6 +184,35 @@ static bool fit_fronts(struct settling *s, struct status *status)
   return true;
 }
 
+/* Line through Lambda over height/box height, of the layers whose middles lie between two heights. */
+static struct line lambda_line(const struct settling *s, size_t snapshot, double low, double high, double *columns)
+{
+  double *height = columns, *lambda = columns + s->layers;
+  size_t count = 0;
+  for (size_t l = 0; l < s->layers; l++) {
+    const double middle = settling_height(s, l), value = s->lambda[snapshot * s->layers + l];
+    if (isnan(value) || middle < low || middle > high) continue;
+    height[count] = middle / s->box;
+    lambda[count++] = value;
+  }
+  return fit_line(height, lambda, count);
+}
+
+/* The lines through Lambda in the sediment at the end, and above it when the interface has fallen half of its way. */
+static bool fit_lambda(struct settling *s, struct status *status)
+{
+  double *columns = memory_allocate(2 * s->layers, sizeof *columns, "the fits", status);
+  if (!columns) return false;
+  const size_t last = s->snapshots - 1;
+  const double half = 0.5 * (s->interface[0] + s->interface[last]);
+  size_t n = 0;
+  while (n < last && s->interface[n] > half) n++;
+  s->lambda_bed = lambda_line(s, last, 0, s->interface[last], columns);
+  s->lambda_above = lambda_line(s, n, s->front[n], s->interface[n], columns);
+  free(columns);
+  return true;
+}
+
 static double fastest(const struct history *h)
 {
   double most = 0;
@@ -159,13 +222,13 @@ static double fastest(const struct history *h)
   return most;
 }
 
-/* Sorts the discs into layers by their height at the first snapshot. */
-static void assign_layers(struct work *w)
+/* Sorts the discs into bands by their height at the first snapshot. */
+static void assign_bands(struct work *w)
 {
   const size_t discs = w->history->discs;
   for (size_t i = 0; i < discs; i++) w->scratch[i] = history_at(w->history, 0, i, HISTORY_Y);
   gsl_sort_index(w->order, w->scratch, 1, discs);
-  for (size_t k = 0; k < discs; k++) w->layer[w->order[k]] = (unsigned)(k * SETTLING_LAYERS / discs);
+  for (size_t k = 0; k < discs; k++) w->band[w->order[k]] = (unsigned)(k * SETTLING_BANDS / discs);
 }
 
 static double initial_of(const struct scene *scene)
@@ -185,10 +248,13 @@ static bool allocate(struct work *w, struct status *status)
   return (s->interface = memory_allocate(n, sizeof *s->interface, "the interface", status)) &&
          (s->front = memory_allocate(n, sizeof *s->front, "the sediment's surface", status)) &&
          (s->mixing = memory_allocate(n, sizeof *s->mixing, "the mixing", status)) &&
-         (s->layer = memory_allocate(n, sizeof *s->layer, "the layers", status)) &&
-         (s->concentration = memory_allocate(n * s->slabs, sizeof(double), "the profiles", status)) &&
-         (w->order = memory_allocate(discs, sizeof *w->order, "the layers", status)) &&
-         (w->layer = memory_allocate(discs, sizeof *w->layer, "the layers", status)) &&
+         (s->band = memory_allocate(n, sizeof *s->band, "the bands", status)) &&
+         (s->concentration = memory_allocate(n * s->layers, sizeof(double), "the profiles", status)) &&
+         (s->lambda = memory_allocate(n * s->layers, sizeof(double), "the profiles", status)) &&
+         (w->order = memory_allocate(discs, sizeof *w->order, "the bands", status)) &&
+         (w->band = memory_allocate(discs, sizeof *w->band, "the bands", status)) &&
+         (w->zeta = memory_allocate(discs, sizeof *w->zeta, "the layers", status)) &&
+         (w->count = memory_allocate(s->layers, sizeof *w->count, "the layers", status)) &&
          (w->scratch = memory_allocate(discs, sizeof *w->scratch, "the heights", status)) &&
          (w->held = memory_allocate(w->squares[0] * w->squares[1], sizeof *w->held, "the mixing", status));
 }
@@ -205,24 +271,31 @@ bool settling_create(struct settling *s, const struct scene *scene, const struct
 {
   *s = (struct settling){.snapshots = history->snapshots, .step = history->step, .initial = initial_of(scene)};
   struct work w = {.scene = scene, .history = history, .to = s, .radius = mean_radius(scene)};
-  s->slab = 4 * w.radius;
-  s->slabs = (size_t)ceil(scene->domain.size[1] / s->slab);
+  s->layer = 4 * w.radius;
+  s->box = scene->domain.size[1];
+  s->layers = (size_t)ceil(s->box / s->layer);
   for (int axis = 0; axis < 2; axis++) w.squares[axis] = (size_t)ceil(scene->domain.size[axis] / (10 * w.radius));
   bool ok = allocate(&w, status);
-  if (ok) assign_layers(&w);
+  if (ok) {
+    assign_bands(&w);
+    assign_zeta(&w);
+  }
   for (size_t n = 0; ok && n < s->snapshots; n++) {
     s->interface[n] = interface_of(&w, n);
     s->mixing[n] = mixing_of(&w, n);
-    add_layers(&w, n);
+    add_bands(&w, n);
     add_concentration(&w, n);
+    add_lambda(&w, n);
   }
   if (ok) {
     s->bed = bed_of(s);
     s->restless = fastest(history);
-    ok = fit_fronts(s, status);
+    ok = fit_fronts(s, status) && fit_lambda(s, status);
   }
   free(w.order);
-  free(w.layer);
+  free(w.band);
+  free(w.zeta);
+  free(w.count);
   free(w.scratch);
   free(w.held);
   if (!ok) settling_destroy(s);
@@ -234,7 +307,8 @@ void settling_destroy(struct settling *s)
   free(s->interface);
   free(s->front);
   free(s->mixing);
-  free(s->layer);
+  free(s->band);
   free(s->concentration);
+  free(s->lambda);
   *s = (struct settling){0};
 }

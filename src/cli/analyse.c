@@ -15,18 +15,28 @@ const struct option analyse_options[] = {{"json", required_argument, NULL, OPTIO
 
 static void print_help(void)
 {
-  puts("usage: delbm analyse DIR [--json FILE] [--tables]\n"
-       "\n"
-       "Reports what a run's discs did, from DIR/case.yaml and DIR/particles.csv, one figure a line:\n"
-       "\n"
-       "  one disc, free or in a stream  terminal velocity, drag, lift, Reynolds and Strouhal numbers   body.*\n"
-       "  two discs settling             times and speeds of drafting, kissing and tumbling             pair.*\n"
-       "  many discs settling            interface, sediment, concentration, mixing                     settling.*\n"
-       "\n"
-       "  --json FILE  also writes the figures, and the series of settling, to FILE\n"
-       "  --tables     also writes the series of settling to DIR/settling.csv (interface, sediment's surface, mixing\n"
-       "               index, mean height of five layers) and DIR/profile.csv (concentration by height)\n"
-       "  --help       this text");
+  puts(
+      "usage: delbm analyse DIR [--json FILE] [--tables]\n"
+      "\n"
+      "Reports what a run's discs did, from case.yaml, particles.csv and run.json in DIR, one figure a line:\n"
+      "\n"
+      "  one free disc        terminal speed, drag, Reynolds and Strouhal numbers             body.*\n"
+      "  held discs           drag, lift and torque, mean of each, Reynolds number            body.*\n"
+      "  two discs settling   times and speeds of drafting, kissing and tumbling              pair.*\n"
+      "  many discs settling  interface, sediment, concentration, mixing                      settling.*\n"
+      "\n"
+      "Speeds of body.* are relative to the fluid: to the stream of an inlet, to fluid at rest where walls close the\n"
+      "box, else to the mean velocity of the fluid at the end of the run. The terminal speed is the mean over the "
+      "last\n"
+      "stretch of five diameters or more whose thirds agree within 0.5 %; a line that begins with # says why there is\n"
+      "none, or that forces on held discs are not steady yet.\n"
+      "\n"
+      "  --json FILE  also writes the figures, and the series of settling, to FILE\n"
+      "  --tables     also writes the series of settling to DIR/settling.csv (interface, sediment's surface, Lacey's\n"
+      "               mixing index, mean height of five bands) and DIR/profile.csv (concentration and the mixing "
+      "index\n"
+      "               lambda by height)\n"
+      "  --help       this text");
 }
 
 struct request {
@@ -54,11 +64,8 @@ static int analyse_scene(const struct scene *scene, const struct request *reques
 {
   struct status status;
   struct analysis analysis;
-  char *table = file_join(request->directory, "particles.csv", &status);
-  bool ok = table && analysis_create(&analysis, scene, table, &status);
-  free(table);
-  if (!ok) return report_error(&status);
-  ok = report(&analysis, request, &status);
+  if (!analysis_create(&analysis, scene, request->directory, &status)) return report_error(&status);
+  const bool ok = report(&analysis, request, &status);
   analysis_destroy(&analysis);
   return ok ? DELBM_OK : report_error(&status);
 }

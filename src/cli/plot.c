@@ -52,11 +52,8 @@ static bool has_file(const char *directory, const char *name)
 static bool find_interface(const struct scene *scene, const char *directory, struct status *status)
 {
   struct analysis analysis;
-  char *table = file_join(directory, "particles.csv", status);
-  bool found = table && analysis_create(&analysis, scene, table, status);
-  free(table);
-  if (!found) return false;
-  found = tables_write(&analysis.settling, directory, status);
+  if (!analysis_create(&analysis, scene, directory, status)) return false;
+  const bool found = tables_write(&analysis.settling, directory, status);
   analysis_destroy(&analysis);
   return found;
 }
