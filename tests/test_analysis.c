@@ -288,6 +288,10 @@ Test(body, of_a_free_disc_drag_follows_from_weight_and_speed)
   cr_expect_float_eq(body.spin, 0.1, 1e-9);
   cr_expect_float_eq(body.strouhal, 20 / (0.1 * 1000), 1e-3, "%g", body.strouhal);
   cr_expect_float_eq(body.swing, 0.1, 0.005, "%g", body.swing);
+  cr_expect_float_eq(body.growth, 1, 0.05, "%g", body.growth);
+  for (size_t n = 300; n < h.snapshots; n++) *at(&h, n, 0, HISTORY_VX) *= 3;
+  cr_assert(body_analyse(&body, &scene, no_mean, &h, &status), "%s", status.message);
+  cr_expect_gt(body.growth, 2.5);
   /* y > 60, three diameters, until snapshot 367 */
   cr_expect_eq(body.last, 367 * 50);
   cr_expect_str_empty(body.note);

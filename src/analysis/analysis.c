@@ -51,6 +51,7 @@ static void add_body(struct figures *f, const struct body *b)
   add(f, "body", "spin", b->spin, "-", "omega R/U");
   add(f, "body", "strouhal", b->strouhal, "-", "2 f R/U of the shedding");
   add(f, "body", "swing", b->swing, "-", held ? "amplitude of C_L" : "amplitude of the lateral velocity over U");
+  add(f, "body", "swing_growth", b->growth, "-", "of that, from the first to the last third; 1: shedding is developed");
 }
 
 static void add_pair(struct figures *f, const struct pair *p)

@@ -100,16 +100,18 @@ static void component(const struct work *w, enum history_column x, const double 
     to[k] = factor * component_at(w->history, w->window.first + k, x, direction);
 }
 
+/* The series is of the snapshots of the window. */
 static bool add_shedding(struct body *b, const struct work *w, const double *series, double unit, struct status *status)
 {
   struct oscillation found;
-  const size_t count = w->window.count;
+  const size_t first = w->window.first, count = w->window.count;
   if (!(b->reynolds > body_steady_below) || count < 2) return true;
   if (!fit_oscillation(series, count, &found, status)) return false;
-  const double interval = (double)(b->last - b->first) / (double)(count - 1);
+  const double interval = (double)(w->history->step[first + count - 1] - w->history->step[first]) / (double)(count - 1);
   if (found.frequency * (double)count < body_least_cycles || found.amplitude < 1e-3 * unit) return true;
   b->strouhal = 2 * w->radius * found.frequency / (interval * b->speed.mean);
   b->swing = found.amplitude / unit;
+  b->growth = fit_spread(series + count - count / 3, count / 3).deviation / fit_spread(series, count / 3).deviation;
   return true;
 }
 
@@ -255,6 +257,7 @@ static bool analyse_free(struct body *b, struct work *w, struct status *status)
   else
     snprintf(b->note, sizeof b->note, "no drag coefficient: the disc moves through the fluid against its weight");
   set_spin(b, w);
+  w->window = (struct window){fall / 2, fall - fall / 2};
   component(w, HISTORY_VX, w->frame.across, 1, w->way);
   return add_shedding(b, w, w->way, b->speed.mean, status);
 }
@@ -330,7 +333,8 @@ bool body_analyse(struct body *b, const struct scene *scene, const double mean[2
                      .torque = unknown,
                      .spin = NAN,
                      .strouhal = NAN,
-                     .swing = NAN};
+                     .swing = NAN,
+                     .growth = NAN};
   double *series = memory_allocate(2 * history->snapshots, sizeof *series, "the series of a disc", status);
   if (!series) return false;
   struct work w = {.scene = scene,

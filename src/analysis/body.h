@@ -8,6 +8,7 @@
  *                the weight; and beside it as Zhang et al. (2017) print it, 8 R g (rho_s - rho)/(3 rho U^2), a sphere's.
  *                No C_D where the disc moves against its weight, as on the centre line of a channel whose mean velocity
  *                is less than the velocity there
+ *                Shedding is sought in the lateral velocity over the second half of the fall
  *   held discs   fixed, or driven at one velocity; means per disc, R the mean radius. U from the ambient fluid and the
  *                discs' own velocity. C_D = F/(rho U^2 R) from the force along U, C_L = F/(rho U^2 R) from the force a
  *                quarter turn counter-clockwise from U, C_M = T/(rho U^2 R^2), over the last quarter of the run; and
@@ -46,6 +47,7 @@ struct body {
   double spin;                /* mean omega R/U */
   double strouhal;            /* 2 f R/U of the lateral velocity, or of the lift; NAN where nothing is shed */
   double swing;               /* amplitude of that: lateral velocity over U, or C_L; NAN likewise */
+  double growth;              /* of the swing: deviation in the last third of the series over that in the first */
 };
 
 /* True for a scene with one disc that is free and feels gravity along an axis; and for one whose discs are all held, at
