@@ -5,6 +5,7 @@
 #include "output/progress.h"
 #include "output/recorder.h"
 #include "output/summary.h"
+#include "scenes.h"
 
 #include <criterion/criterion.h>
 #include <ftw.h>
@@ -430,16 +431,21 @@ struct read_back {
   uint8_t *pixels;
 };
 
-static struct read_back draw(const struct picture *picture)
+static struct read_back read_back(const char *path)
 {
-  char *path = in_scratch("frame.png");
-  cr_assert(picture_write(picture, path, &status), "%s", status.message);
   struct read_back back = {.image = {.version = PNG_IMAGE_VERSION}};
   cr_assert(png_image_begin_read_from_file(&back.image, path));
   back.image.format = PNG_FORMAT_RGB;
   back.pixels = malloc(PNG_IMAGE_SIZE(back.image));
   cr_assert(png_image_finish_read(&back.image, NULL, back.pixels, 0, NULL));
   return back;
+}
+
+static struct read_back draw(const struct picture *picture)
+{
+  char *path = in_scratch("frame.png");
+  cr_assert(picture_write(picture, path, &status), "%s", status.message);
+  return read_back(path);
 }
 
 /* The colour as 0xRRGGBB at pixel (x, y) from the lower left. */
@@ -496,6 +502,79 @@ Test(picture, shows_a_disc_in_its_colour_with_its_turned_mark_and_outline)
   back = draw(picture);
   cr_assert_eq(colour_at(&back, 104, 54), PICTURE_DISC);
   cr_assert_eq(colour_at(&back, 95, 54), PICTURE_MARK);
+}
+
+/* The colours at the ends and in the middle of the scale of discs. */
+enum { LOW = 0x133a6b, MIDDLE = 0xe9c46a, HIGH = 0xc2481a };
+
+Test(picture, of_discs_with_values_colours_each_by_its_own_and_leaves_out_the_mark)
+{
+  struct some_flow flow;
+  struct picture *picture = some_flow(&flow, 400, 300);
+  struct discs *discs = &flow.discs.discs;
+  double values[DISCS] = {0, 3};
+  for (int k = 0; k < DISCS; k++) {
+    discs->x[k] = 100 + 100 * k;
+    discs->y[k] = 50;
+  }
+  picture->values = values;
+  picture->values_end = 3;
+  struct read_back back = draw(picture);
+  cr_expect_eq(colour_at(&back, 104, 54), LOW, "%06x, where a mark would be", colour_at(&back, 104, 54));
+  cr_expect_eq(colour_at(&back, 200, 50), HIGH, "%06x", colour_at(&back, 200, 50));
+  picture->values_end = 6;
+  back = draw(picture);
+  cr_expect_eq(colour_at(&back, 200, 50), MIDDLE, "%06x", colour_at(&back, 200, 50));
+  /* without an end of their own, on the scale of the flow */
+  picture->values_end = 0;
+  picture->maximum = 6;
+  back = draw(picture);
+  cr_expect_eq(colour_at(&back, 200, 50), MIDDLE, "%06x", colour_at(&back, 200, 50));
+}
+
+/* Colour at a place after some steps, in a case with two driven discs: R = 8 from (100, 75) and R = 16 from (300, 150),
+ * both rising at 0.1 cells/step, in a box 300 high. */
+static unsigned colour_in_run(enum frame_discs kind, int64_t steps, int x, int y)
+{
+  struct scene scene = scene_box(400, 300, 0.05, SIDES_CLOSED);
+  struct simulation *simulation;
+  struct recorder *recorder;
+  bool replaced;
+  scene_add_disc(&scene, 8, 1, 100, 75);
+  scene_add_disc(&scene, 16, 1, 300, 150);
+  for (int k = 0; k < DISCS; k++) {
+    scene.particles.discs[k].motion = DISC_DRIVEN;
+    scene.particles.discs[k].velocity[1] = 0.1;
+  }
+  scene.title = scene.name = NULL;
+  scene.run.steps = scene.output.frames.every = steps;
+  scene.output.frames.discs = kind;
+  scene.output.frames.maximum = 0.2;
+  cr_assert(simulation_create(&simulation, &scene, &status), "%s", status.message);
+  cr_assert(recorder_open(&recorder, &scene, scratch, &replaced, &status), "%s", status.message);
+  cr_assert(simulation_advance(simulation, steps, &status), "%s", status.message);
+  cr_assert(recorder_record(recorder, simulation, true, &status), "%s", status.message);
+  recorder_destroy(recorder);
+  simulation_destroy(simulation);
+  scene_clear(&scene);
+  char name[40];
+  snprintf(name, sizeof name, "frames/%08d.png", (int)steps);
+  struct read_back back = read_back(in_scratch(name));
+  const unsigned colour = colour_at(&back, x, y);
+  free(back.pixels);
+  return colour;
+}
+
+Test(picture, of_a_run_shows_initial_heights_whenever_speeds_and_radii)
+{
+  const unsigned quarter = 0x2a9d8f;
+  cr_expect_eq(colour_in_run(FRAME_DISCS_HEIGHT, 10, 100, 76), quarter);
+  cr_expect_eq(colour_in_run(FRAME_DISCS_HEIGHT, 200, 100, 95), quarter, "20 cells higher, in the colour of the start");
+  cr_expect_eq(colour_in_run(FRAME_DISCS_HEIGHT, 10, 300, 151), MIDDLE);
+  cr_expect_eq(colour_in_run(FRAME_DISCS_SPEED, 10, 100, 76), MIDDLE, "0.1 on the scale of speed, which ends at 0.2");
+  cr_expect_eq(colour_in_run(FRAME_DISCS_RADIUS, 10, 100, 76), MIDDLE);
+  cr_expect_eq(colour_in_run(FRAME_DISCS_RADIUS, 10, 300, 151), HIGH);
+  cr_expect_eq(colour_in_run(FRAME_DISCS_PLAIN, 10, 97, 79), PICTURE_DISC);
 }
 
 Test(picture, shows_a_disc_across_a_periodic_side_on_both)

@@ -243,7 +243,7 @@ static const char *const crowd = "title: crowd\n"
                                  "  every: 50\n"
                                  "  checkpoint: {every: 97}\n"
 #ifdef DELBM_PNG
-                                 "  frames: {every: 400}\n"
+                                 "  frames: {every: 400, discs: height}\n"
 #endif
 #ifdef DELBM_HDF5
                                  "  fields: {every: 40, region: [20, 10, 121, 90], stride: 3}\n"

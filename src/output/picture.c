@@ -30,6 +30,11 @@ static const struct colour_map speed_map = {
 static const struct colour_map vorticity_map = {
     {0xc4ecff, 0x5ab4f0, 0x2170be, 0x133a6b, 0x0b0c14, 0x6b1f1a, 0xc2481a, 0xf5982c, 0xffe8ae}};
 
+/* Dark blue, green, yellow, orange, red: apart from speed_map at every place, and told apart by lightness up to the
+ * middle. */
+static const struct colour_map disc_map = {
+    {0x133a6b, 0x1e6c7d, 0x2a9d8f, 0x8ab17d, 0xe9c46a, 0xefb466, 0xf4a261, 0xdb753e, 0xc2481a}};
+
 struct raster {
   int width, height;
   double *values; /* row by row from the bottom */
@@ -128,12 +133,19 @@ static uint8_t *image_pixel(const struct image *image, int column, int row)
   return image->pixels + CHANNELS * ((ptrdiff_t)(image->height - 1 - row) * image->width + column);
 }
 
-static void paint_raster(struct image *image, const struct raster *raster, const struct picture *picture)
+/* Value at the end of the quantity's scale. */
+static double scale_end(const struct picture *picture, const struct raster *raster)
+{
+  const double maximum = picture->maximum > 0 ? picture->maximum : raster_largest(raster);
+  return maximum > 0 ? maximum : 1;
+}
+
+static void paint_raster(struct image *image, const struct raster *raster, const struct picture *picture,
+                         double maximum)
 {
   bool signed_values = picture->quantity == FRAME_VORTICITY;
   const struct colour_map *map = signed_values ? &vorticity_map : &speed_map;
-  double maximum = picture->maximum > 0 ? picture->maximum : raster_largest(raster);
-  double factor = (signed_values ? 0.5 : 1) / (maximum > 0 ? maximum : 1), rest = signed_values ? 0.5 : 0;
+  double factor = (signed_values ? 0.5 : 1) / maximum, rest = signed_values ? 0.5 : 0;
   double points = (double)raster->width / image->width;
 #pragma omp parallel for schedule(static)
   for (int row = 0; row < image->height; row++)
@@ -154,10 +166,12 @@ static double coverage(double distance)
   return clamp(distance + 0.5, 0, 1);
 }
 
-/* A disc on the picture, in pixels; cosine and sine of its angle. */
+/* A disc on the picture, in pixels; cosine and sine of its angle; its colour, and whether that is plain. */
 struct drawn_disc {
   double x, y, radius;
   double cosine, sine;
+  bool plain;
+  uint8_t inside[CHANNELS];
 };
 
 /* Share of the spin mark at (x, y) from the centre: two opposite quadrants, in small discs a line from centre to
@@ -181,8 +195,8 @@ static void draw_disc_pixel(const struct drawn_disc *disc, double x, double y, u
   if (!(covered > 0)) return;
   double outline = fmin(1.25, 0.2 * disc->radius);
   uint8_t inside[CHANNELS];
-  for (int k = 0; k < CHANNELS; k++) inside[k] = (uint8_t)channel(PICTURE_DISC, k);
-  blend(inside, PICTURE_MARK, mark_coverage(disc, x, y));
+  for (int k = 0; k < CHANNELS; k++) inside[k] = disc->inside[k];
+  if (disc->plain) blend(inside, PICTURE_MARK, mark_coverage(disc, x, y));
   blend(inside, PICTURE_OUTLINE, coverage(outline - inwards));
   blend(pixel, (enum picture_colour)(inside[0] << 16 | inside[1] << 8 | inside[2]), covered);
 }
@@ -203,18 +217,34 @@ static void draw_disc(struct image *image, const struct drawn_disc *disc)
       draw_disc_pixel(disc, column + 0.5 - disc->x, row + 0.5 - disc->y, image_pixel(image, column, row));
 }
 
-static void draw_discs(struct image *image, const struct picture *picture, double pixels)
+/* The disc n where it is, before periodic images. */
+static struct drawn_disc drawn_disc(const struct picture *picture, size_t n, double pixels, double values_end)
 {
   const struct discs *discs = picture->discs;
+  struct drawn_disc disc = {.x = pixels * discs->x[n],
+                            .y = pixels * discs->y[n],
+                            .radius = pixels * discs->radius[n],
+                            .cosine = cos(discs->angle[n]),
+                            .sine = sin(discs->angle[n]),
+                            .plain = !picture->values};
+  for (int k = 0; k < CHANNELS; k++) disc.inside[k] = (uint8_t)channel(PICTURE_DISC, k);
+  if (picture->values) map_colour(&disc_map, picture->values[n] / values_end, disc.inside);
+  return disc;
+}
+
+static void draw_discs(struct image *image, const struct picture *picture, double pixels, double values_end)
+{
   int repeat_x = picture->periodic[0], repeat_y = picture->periodic[1];
-  for (size_t n = 0; n < discs->count; n++)
+  for (size_t n = 0; n < picture->discs->count; n++) {
+    const struct drawn_disc disc = drawn_disc(picture, n, pixels, values_end);
     for (int up = -repeat_y; up <= repeat_y; up++)
-      for (int right = -repeat_x; right <= repeat_x; right++)
-        draw_disc(image, &(struct drawn_disc){.x = pixels * (discs->x[n] + right * picture->size[0]),
-                                              .y = pixels * (discs->y[n] + up * picture->size[1]),
-                                              .radius = pixels * discs->radius[n],
-                                              .cosine = cos(discs->angle[n]),
-                                              .sine = sin(discs->angle[n])});
+      for (int right = -repeat_x; right <= repeat_x; right++) {
+        struct drawn_disc shown = disc;
+        shown.x += pixels * right * picture->size[0];
+        shown.y += pixels * up * picture->size[1];
+        draw_disc(image, &shown);
+      }
+  }
 }
 
 static void write_rows(png_structp png, png_infop info, const struct image *image, FILE *stream)
@@ -287,8 +317,10 @@ bool picture_write(const struct picture *picture, const char *path, struct statu
   bool drawn = raster.values && image.pixels;
   if (drawn) {
     raster_fill(&raster, picture, scale.block);
-    paint_raster(&image, &raster, picture);
-    draw_discs(&image, picture, (double)scale.zoom / scale.block);
+    const double maximum = scale_end(picture, &raster);
+    paint_raster(&image, &raster, picture, maximum);
+    draw_discs(&image, picture, (double)scale.zoom / scale.block,
+               picture->values_end > 0 ? picture->values_end : maximum);
   }
   free(raster.values);
   bool saved = drawn && image_save(&image, path, status);

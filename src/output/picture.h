@@ -4,7 +4,7 @@
 
 #include "solid/discs.h"
 
-/* Colours of the discs, as 0xRRGGBB. The dark quadrants show how far a disc has turned. */
+/* Colours of plain discs, as 0xRRGGBB. The dark quadrants show how far a disc has turned. */
 enum picture_colour { PICTURE_DISC = 0xf0f1f4, PICTURE_MARK = 0x868d9b, PICTURE_OUTLINE = 0x14161c };
 
 struct picture {
@@ -13,7 +13,9 @@ struct picture {
   bool periodic[2];      /* discs across such a side appear on both */
   const struct discs *discs;
   enum frame_quantity quantity;
-  double maximum; /* value at the end of the colour scale; 0: the largest of this picture */
+  double maximum;       /* value at the end of the colour scale; 0: the largest of this picture */
+  const double *values; /* of each disc, which its colour shows; NULL: plain discs */
+  double values_end;    /* end of their scale, which starts at 0; 0: the end of the quantity's */
 };
 
 /* Pixels on a domain of `size` cells: one a cell, unless the longer side would then have more than PICTURE_LARGEST

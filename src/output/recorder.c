@@ -13,6 +13,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <inttypes.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
@@ -37,6 +38,7 @@ struct recorder {
   int next_checkpoint;  /* which of the two is written next */
   uint32_t fingerprint; /* of the case */
   double *ux, *uy;      /* fields of a frame; NULL without frames */
+  double *values;       /* of the discs of a frame; NULL where they are plain */
   double start;         /* clock at step 0 of a run that was never interrupted */
   double seconds;       /* spent on output */
 };
@@ -142,7 +144,10 @@ static bool prepare_velocities(struct recorder *recorder, struct status *status)
   if (recorder->frames.every == 0) return true;
   recorder->ux = allocate_field(recorder, status);
   if (recorder->ux) recorder->uy = allocate_field(recorder, status);
-  return recorder->uy;
+  if (!recorder->uy || recorder->scene->output.frames.discs == FRAME_DISCS_PLAIN) return recorder->uy;
+  const size_t discs = recorder->scene->particles.count;
+  recorder->values = memory_allocate(discs > 0 ? discs : 1, sizeof(double), "the colours of a frame", status);
+  return recorder->values;
 }
 
 static bool prepare_paths(struct recorder *recorder, const char *directory, struct status *status)
@@ -293,6 +298,24 @@ int64_t recorder_next(const struct recorder *recorder, int64_t step)
                  series_next(&recorder->checkpoints, step, end));
 }
 
+/* What the colours of the discs show, and the end of its scale, as of struct picture. The height at step 0 is that of the
+ * case, so that a resumed run draws the same. */
+static double take_values(const struct recorder *recorder, const struct discs *discs)
+{
+  const struct scene *scene = recorder->scene;
+  const enum frame_discs kind = scene->output.frames.discs;
+  double largest = 0;
+  for (size_t i = 0; i < discs->count; i++) {
+    recorder->values[i] = kind == FRAME_DISCS_HEIGHT  ? scene->particles.discs[i].position[1]
+                          : kind == FRAME_DISCS_SPEED ? hypot(discs->vx[i], discs->vy[i])
+                                                      : discs->radius[i];
+    largest = fmax(largest, recorder->values[i]);
+  }
+  if (kind == FRAME_DISCS_HEIGHT) return scene->domain.size[1];
+  if (kind == FRAME_DISCS_SPEED && scene->output.frames.quantity == FRAME_SPEED) return 0;
+  return largest > 0 ? largest : 1;
+}
+
 static bool record_frame(struct recorder *recorder, struct simulation *simulation, struct status *status)
 {
   const struct scene *scene = recorder->scene;
@@ -307,7 +330,9 @@ static bool record_frame(struct recorder *recorder, struct simulation *simulatio
                             .periodic = {scene_is_periodic(scene, 0), scene_is_periodic(scene, 1)},
                             .discs = simulation_discs(simulation),
                             .quantity = scene->output.frames.quantity,
-                            .maximum = scene->output.frames.maximum};
+                            .maximum = scene->output.frames.maximum,
+                            .values = recorder->values};
+  if (recorder->values) picture.values_end = take_values(recorder, picture.discs);
   bool written = picture_write(&picture, path, status);
   free(path);
   return written;
@@ -406,6 +431,7 @@ void recorder_destroy(struct recorder *recorder)
   free(recorder->directory);
   free(recorder->ux);
   free(recorder->uy);
+  free(recorder->values);
   free(recorder->case_path);
   free(recorder->table_path);
   free(recorder->frames_path);

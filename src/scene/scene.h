@@ -22,6 +22,7 @@ enum contact_area { AREA_LENS, AREA_CELLS };
 enum contact_search { SEARCH_GRID, SEARCH_LINKED_CELL };
 enum contact_damping { DAMPING_CRITICAL, DAMPING_PRINTED };
 enum frame_quantity { FRAME_SPEED, FRAME_VORTICITY };
+enum frame_discs { FRAME_DISCS_PLAIN, FRAME_DISCS_HEIGHT, FRAME_DISCS_SPEED, FRAME_DISCS_RADIUS };
 
 /* One side of the box. `velocity` is that of a wall or of the fluid at an inlet. */
 struct side {
@@ -134,6 +135,7 @@ struct scene {
       int64_t every; /* 0: none */
       enum frame_quantity quantity;
       double maximum; /* value at the end of the colour scale; 0: the largest of each frame */
+      enum frame_discs discs;
     } frames;
   } output;
 };
