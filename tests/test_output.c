@@ -505,7 +505,7 @@ Test(picture, shows_a_disc_in_its_colour_with_its_turned_mark_and_outline)
 }
 
 /* The colours at the ends and in the middle of the scale of discs. */
-enum { LOW = 0x133a6b, MIDDLE = 0xe9c46a, HIGH = 0xc2481a };
+enum { LOW = 0x3b5bff, MIDDLE = 0x35e27e, HIGH = 0xffffff };
 
 Test(picture, of_discs_with_values_colours_each_by_its_own_and_leaves_out_the_mark)
 {
@@ -567,7 +567,7 @@ static unsigned colour_in_run(enum frame_discs kind, int64_t steps, int x, int y
 
 Test(picture, of_a_run_shows_initial_heights_whenever_speeds_and_radii)
 {
-  const unsigned quarter = 0x2a9d8f;
+  const unsigned quarter = 0x22bdf5;
   cr_expect_eq(colour_in_run(FRAME_DISCS_HEIGHT, 10, 100, 76), quarter);
   cr_expect_eq(colour_in_run(FRAME_DISCS_HEIGHT, 200, 100, 95), quarter, "20 cells higher, in the colour of the start");
   cr_expect_eq(colour_in_run(FRAME_DISCS_HEIGHT, 10, 300, 151), MIDDLE);

@@ -5,32 +5,24 @@ off = ARG1 . "/off/"
 figure(key) = system(sprintf("awk '$1 == \"on\" && $2 == \"settling.%s\" {print $3}' '%s/figures.txt'", key, ARG1)) + 0
 set datafile separator ","
 
-# Each disc coloured by its height at step 0.
-set terminal pngcairo size 760, 790 font "sans,10"
+# Frames of the run: the field of the fluid's speed, one scale for all, and discs by their height at step 0.
+set terminal pngcairo size 820, 860 font "sans,10"
 set output ARG1 . "/snapshots.png"
-array start[2500]
-stats on . "particles.csv" using (column("step") == 0 ? (start[int(column("id")) + 1] = column("y"), 0) : NaN) nooutput
-set multiplot layout 2, 2 title "Fig. 12: discs by initial height"
+set multiplot layout 2, 2 title "Fig. 12: discs by initial height on the fluid's speed, 0 to 0.03 cells/step"
 set size ratio -1
-set xrange [0:1000]
-set yrange [0:1000]
-set palette defined (0 "#133a6b", 0.25 "#2a9d8f", 0.5 "#e9c46a", 0.75 "#f4a261", 1 "#c2481a")
-set cbrange [0:1000]
-unset colorbox
-unset key
 unset tics
-set style fill solid noborder
+unset border
 do for [step in "0 20000 40000 80000"] {
   set title "step " . step
-  plot on . "particles.csv" using (column("step") == step + 0 ? column("x") : NaN):(column("y")):(5):(start[int(column("id")) + 1]) with circles linecolor palette
+  plot sprintf("%s/frames/%08d.png", on, step + 0) binary filetype=png with rgbimage notitle
 }
 unset multiplot
 
 reset
 set datafile separator ","
-set terminal pngcairo size 1000, 860 font "sans,10"
+set terminal pngcairo size 1000, 1290 font "sans,10"
 set output ARG1 . "/settling.png"
-set multiplot layout 2, 2
+set multiplot layout 3, 2
 set grid
 set key top right
 set title "Fig. 13: interface and sediment"
@@ -58,7 +50,15 @@ set xrange [0:1]
 plot for [step in "0 10000 20000 30000 40000 50000 60000 80000"] on . "profile.csv" \
        using (column("step") == step + 0 ? column("concentration") : NaN):(column("height")) with linespoints pointtype 7 pointsize 0.3 title "step " . step
 unset arrow 1
-set title "Fig. 15: mixing of five layers"
+set title "Fig. 15: mixing index (25)"
+set xlabel "height / cells"
+set ylabel "mean of l\\_0/N\\_l over the discs of layer l"
+set xrange [0:1000]
+set yrange [0:1]
+plot for [step in "0 10000 20000 30000 40000 60000 80000"] on . "profile.csv" \
+       using (column("step") == step + 0 ? column("height") : NaN):(column("lambda")) with linespoints pointtype 7 pointsize 0.3 title "step " . step, \
+     x / 1000 with lines dashtype 2 linecolor rgb "black" title "unmixed, at the start"
+set title "Lacey's mixing index of five bands by initial height"
 set xlabel "step / 1000"
 set ylabel "mixing index"
 set xrange [0:80]

@@ -30,10 +30,9 @@ static const struct colour_map speed_map = {
 static const struct colour_map vorticity_map = {
     {0xc4ecff, 0x5ab4f0, 0x2170be, 0x133a6b, 0x0b0c14, 0x6b1f1a, 0xc2481a, 0xf5982c, 0xffe8ae}};
 
-/* Dark blue, green, yellow, orange, red: apart from speed_map at every place, and told apart by lightness up to the
- * middle. */
+/* Blue, cyan, green, white: lightness rises along the scale, and no hue of speed_map occurs. */
 static const struct colour_map disc_map = {
-    {0x133a6b, 0x1e6c7d, 0x2a9d8f, 0x8ab17d, 0xe9c46a, 0xefb466, 0xf4a261, 0xdb753e, 0xc2481a}};
+    {0x3b5bff, 0x2f8dff, 0x22bdf5, 0x1fdcc6, 0x35e27e, 0x86ec5a, 0xc9f57a, 0xeafbb8, 0xffffff}};
 
 struct raster {
   int width, height;

@@ -14,7 +14,7 @@ struct picture {
   const struct discs *discs;
   enum frame_quantity quantity;
   double maximum;       /* value at the end of the colour scale; 0: the largest of this picture */
-  const double *values; /* of each disc, which its colour shows; NULL: plain discs */
+  const double *values; /* of each disc, which its colour shows, from blue to white; NULL: plain discs */
   double values_end;    /* end of their scale, which starts at 0; 0: the end of the quantity's */
 };
 
