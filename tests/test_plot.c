@@ -52,7 +52,8 @@ Test(plot, of_many_discs_settling_shows_their_interface)
                             "run: {steps: 200}\n"
                             "output: {every: 20}\n");
   cr_expect_eq(shell("$DELBM run crowd.yaml --quiet --out c >/dev/null; $DELBM plot c >out 2>err && ! test -s err"), 0);
-  cr_expect(is_picture("c/plots/interface.png") && is_picture("c/plots/trajectories.png"));
+  cr_expect(is_picture("c/plots/interface.png") && is_picture("c/plots/mixing.png") &&
+            is_picture("c/plots/trajectories.png"));
 }
 
 Test(plot, uses_a_changed_script_as_it_is_until_told_otherwise)

@@ -72,6 +72,27 @@ Test(validation, a_settling_disc_has_the_drag_of_a_cylinder)
   expect_near("drag over a cylinder's, in unbounded water", 2 * excess[1] - excess[0], 1, 5);
 }
 
+/* A disc of 0.25 cm, density 1.25, in a box of 2 x 6 cm, viscosity 0.1 cm^2/s: Reynolds number rho_s D U/mu of 17.27 at
+ * most (Glowinski et al. 2001; the set-up of Wan & Turek 2006). The fall has 15 diameters, of which a third is its start.
+ * One cell is 0.0125 cm, one step 1.5625e-4 s. */
+Test(validation, a_short_fall_has_its_terminal_speed_found)
+{
+  shell_write("disc.yaml", "domain: {size: [160, 480]}\n"
+                           "fluid: {viscosity: 0.1}\n"
+                           "particles: {density: 1.25, gravity: [0, -1.916e-3], discs: [{radius: 10, position: [80, "
+                           "320]}]}\n"
+                           "run: {steps: 6000}\n"
+                           "output: {every: 20}\n");
+  cr_assert_eq(shell("%s run disc.yaml --quiet --out fall >/dev/null", DELBM), 0);
+  expect_near("Reynolds number", 1.25 * figure("fall", "body.reynolds"), 17.27, 2);
+  expect_near("terminal over largest speed", figure("fall", "body.speed") / figure("fall", "body.fastest"), 1, 1);
+  cr_assert_eq(shell("%s run disc.yaml --set run.steps=1600 --quiet --out begun >/dev/null && %s analyse begun | "
+                     "grep -q 'no terminal speed: still accelerating'",
+                     DELBM, DELBM),
+               0);
+  cr_expect(isnan(figure("begun", "body.speed")));
+}
+
 /* Figure 9: drag and lift of R = 10 in a box of 40 R, less what that box adds: proportional to 1/L, so as much as R = 5
  * loses from 40 R to 80 R, twice. */
 Test(validation, a_spinning_disc_is_lifted_and_dragged_as_computed_otherwise)

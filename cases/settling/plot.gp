@@ -8,7 +8,7 @@ set datafile separator ","
 # Frames of the run: the field of the fluid's speed, one scale for all, and discs by their height at step 0.
 set terminal pngcairo size 820, 860 font "sans,10"
 set output ARG1 . "/snapshots.png"
-set multiplot layout 2, 2 title "Fig. 12: discs by initial height on the fluid's speed, 0 to 0.03 cells/step"
+set multiplot layout 2, 2 title "Fig. 12: discs by initial height on the fluid's speed, 0 to 0.06 cells/step"
 set size ratio -1
 unset tics
 unset border
@@ -55,16 +55,16 @@ set xlabel "height / cells"
 set ylabel "mean of l\\_0/N\\_l over the discs of layer l"
 set xrange [0:1000]
 set yrange [0:1]
+set key bottom right
 plot for [step in "0 10000 20000 30000 40000 60000 80000"] on . "profile.csv" \
-       using (column("step") == step + 0 ? column("height") : NaN):(column("lambda")) with linespoints pointtype 7 pointsize 0.3 title "step " . step, \
-     x / 1000 with lines dashtype 2 linecolor rgb "black" title "unmixed, at the start"
+       using (column("step") == step + 0 ? column("height") : NaN):(column("lambda")) with linespoints pointtype 7 pointsize 0.3 title "step " . step
 set title "Lacey's mixing index of five bands by initial height"
 set xlabel "step / 1000"
 set ylabel "mixing index"
 set xrange [0:80]
 set yrange [0:1]
 plot on . "settling.csv" using (column("step") / 1000):(column("mixing")) with lines linewidth 2 notitle
-set title "Mean height with and without zero\_flux"
+set title "Mean height with and without zero\\_flux"
 set ylabel "mean height / cells"
 set xrange [0:20]
 set yrange [*:*]

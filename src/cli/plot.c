@@ -21,7 +21,8 @@ static void print_help(void)
        "\n"
        "  trajectories.png  paths of discs, and where they are at the last step\n"
        "  velocities.png    velocity and spin of discs\n"
-       "  interface.png     many discs settling: interface, sediment and layers\n"
+       "  interface.png     many discs settling: interface, sediment and bands by initial height\n"
+       "  mixing.png        many discs settling: mixing index by height at six steps\n"
        "  stages.png        seconds in each stage\n"
        "\n"
        "Beside each stands its script (trajectories.gp), to be changed at will: one that is there is used as it is.\n"
@@ -63,7 +64,7 @@ static bool choose(const struct scene *scene, const char *directory, bool wanted
 {
   const bool discs = scene->particles.count > 0 && has_file(directory, "particles.csv");
   wanted[PLOT_TRAJECTORIES] = wanted[PLOT_VELOCITIES] = discs;
-  wanted[PLOT_INTERFACE] = discs && settling_applies(scene);
+  wanted[PLOT_INTERFACE] = wanted[PLOT_MIXING] = discs && settling_applies(scene);
   wanted[PLOT_STAGES] = has_file(directory, "run.json");
   return discs || wanted[PLOT_STAGES] ||
          status_fail(status, DELBM_IO, "nothing to plot: %s holds no results", directory);

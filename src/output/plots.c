@@ -54,7 +54,7 @@ static const char velocities[] =
     "unset multiplot\n";
 
 static const char interface[] =
-    "# Many discs settling: interface, surface of the sediment, and mean heights of five layers by initial height.\n"
+    "# Many discs settling: interface, surface of the sediment, and mean heights of five bands by initial height.\n"
     "# In the folder of the run: gnuplot plots/interface.gp   (after delbm analyse DIR --tables, for settling.csv)\n"
     "load 'plots/case.gp'\n"
     "set output 'plots/interface.png'\n"
@@ -64,9 +64,33 @@ static const char interface[] =
     "set grid\n"
     "plot for [k=1:5] 'settling.csv' using 'step':(column(sprintf('layer%d', k))) with lines linecolor rgb '#b0b0b0' "
     "\\\n"
-    "    title k == 1 ? 'layers' : '', \\\n"
+    "    title k == 1 ? 'bands' : '', \\\n"
     "  'settling.csv' using 'step':'interface' with lines linewidth 2 linecolor rgb '#2170be' title 'interface', \\\n"
     "  'settling.csv' using 'step':'front' with lines linewidth 2 linecolor rgb '#c2481a' title 'sediment'\n";
+
+static const char mixing[] =
+    "# Many discs settling: the mixing index lambda by height, at step 0 and five later steps. A disc's layer at step "
+    "0\n"
+    "# is l_0 of N_l; lambda is the mean of l_0/N_l over the discs of a layer. Step 0 is the diagonal.\n"
+    "# In the folder of the run: gnuplot plots/mixing.gp   (after delbm analyse DIR --tables, for profile.csv)\n"
+    "load 'plots/case.gp'\n"
+    "set output 'plots/mixing.png'\n"
+    "stats 'profile.csv' using 'step':'height' nooutput\n"
+    "top = STATS_max_y\n"
+    "stats 'profile.csv' using (column('height') == top ? column('step') : NaN) nooutput\n"
+    "shots = int(STATS_records)\n"
+    "array steps[shots]\n"
+    "k = 0\n"
+    "stats 'profile.csv' using (column('height') == top ? (k = k + 1, steps[k] = column('step'), 0) : NaN) nooutput\n"
+    "shown(n) = steps[1 + int(n * (shots - 1) / 5.)]\n"
+    "set xlabel 'height / cells'\n"
+    "set ylabel 'mixing index'\n"
+    "set xrange [0:ny]\n"
+    "set yrange [0:1]\n"
+    "set grid\n"
+    "set key top left\n"
+    "plot for [n=0:5] 'profile.csv' using (column('step') == shown(n) ? column('height') : NaN):'lambda' \\\n"
+    "    with linespoints pointtype 7 pointsize 0.5 title sprintf('step %d', shown(n))\n";
 
 static const char stages[] =
     "# Seconds of the run spent in each stage.\n"
@@ -91,6 +115,7 @@ static const struct {
 } plots[PLOT_COUNT] = {[PLOT_TRAJECTORIES] = {"trajectories", trajectories},
                        [PLOT_VELOCITIES] = {"velocities", velocities},
                        [PLOT_INTERFACE] = {"interface", interface},
+                       [PLOT_MIXING] = {"mixing", mixing},
                        [PLOT_STAGES] = {"stages", stages}};
 
 const char *plot_name(enum plot plot)

@@ -5,7 +5,7 @@
 
 #include "scene/scene.h"
 
-enum plot { PLOT_TRAJECTORIES, PLOT_VELOCITIES, PLOT_INTERFACE, PLOT_STAGES, PLOT_COUNT };
+enum plot { PLOT_TRAJECTORIES, PLOT_VELOCITIES, PLOT_INTERFACE, PLOT_MIXING, PLOT_STAGES, PLOT_COUNT };
 
 /* Its script is DIR/plots/NAME.gp, its picture DIR/plots/NAME.png. */
 const char *plot_name(enum plot plot);
