@@ -86,7 +86,7 @@ Test(validation, a_short_fall_has_its_terminal_speed_found)
   cr_assert_eq(shell("%s run disc.yaml --quiet --out fall >/dev/null", DELBM), 0);
   expect_near("Reynolds number", 1.25 * figure("fall", "body.reynolds"), 17.27, 2);
   expect_near("terminal over largest speed", figure("fall", "body.speed") / figure("fall", "body.fastest"), 1, 1);
-  cr_assert_eq(shell("%s run disc.yaml --set run.steps=1600 --quiet --out begun >/dev/null && %s analyse begun | "
+  cr_assert_eq(shell("%s run disc.yaml --set run.steps=2200 --quiet --out begun >/dev/null && %s analyse begun | "
                      "grep -q 'no terminal speed: still accelerating'",
                      DELBM, DELBM),
                0);
@@ -99,7 +99,7 @@ Test(validation, a_spinning_disc_is_lifted_and_dragged_as_computed_otherwise)
 {
   static const char *const boxes[] = {"coarse", "large", "fine"};
   static const char *const settings[] = {
-      "'domain.size=[200,200]' --set 'particles.discs.0.position=[80,100]' --set run.steps=16000",
+      "'domain.size=[200,200]' --set 'particles.discs.0.position=[80,100]' --set run.steps=22000",
       "'domain.size=[400,400]' --set 'particles.discs.0.position=[160,200]' --set run.steps=30000",
       "'domain.size=[400,400]' --set 'particles.discs.0.position=[160,200]' --set run.steps=30000"};
   const char *const finer = "--set particles.discs.0.radius=10 --set particles.discs.0.spin=0.002 --set "

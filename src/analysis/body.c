@@ -195,7 +195,8 @@ static void note_absence(struct body *b, const struct work *w, const struct plat
   if (p->kind == PLATEAU_SHORT && diameters >= body_least_way)
     snprintf(b->note, size, "no terminal speed: fewer than three rows of the fall; output.every is too long");
   else if (p->kind == PLATEAU_SHORT)
-    snprintf(b->note, size, "no terminal speed: %.2g diameters of fall before the side ahead is near; %g are needed",
+    snprintf(b->note, size,
+             "no terminal speed: %.2g diameters of fall before the run ends or a side is near; %g are needed",
              diameters, body_least_way);
   else if (fabs(percent) <= 100 * plateau_tolerance)
     snprintf(b->note, size, "no terminal speed: the speed fluctuates too much over the last %g diameters",
