@@ -526,6 +526,15 @@ Test(settling, of_exact_layers_has_exact_fronts_speeds_and_concentrations)
   cr_expect_float_eq(s->fall.r2, 1, 1e-12);
   cr_expect_float_eq(s->rise.r2, 1, 1e-12);
   cr_expect_float_eq(s->sharpness, 10, 1e-9, "half of the change between the middles of two layers");
+  cr_expect(s->settled);
+  /* cut off at snapshot 6 it has an interface, and no sediment that could be named */
+  settling_destroy(s);
+  a.history.snapshots = 7;
+  cr_assert(settling_create(s, &scene, &a.history, &status), "%s", status.message);
+  cr_expect_not(s->settled);
+  cr_expect_float_eq(reported(&a, "settling.interface_speed"), 0.8, 1e-7);
+  cr_expect(isnan(reported(&a, "settling.bed")) && isnan(reported(&a, "settling.front_speed")) &&
+            isnan(reported(&a, "settling.front_speed_kynch")) && isnan(reported(&a, "settling.lambda_bed_slope")));
   analysis_destroy(&a);
   scene_clear(&scene);
 }

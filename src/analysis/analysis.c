@@ -140,10 +140,17 @@ void analysis_destroy(struct analysis *a)
   *a = (struct analysis){0};
 }
 
-static void print_remarks(const struct body *b, FILE *stream)
+/* What a reader of the figures of settling must know; empty: nothing. */
+static const char *settling_note(const struct settling *s)
 {
-  fprintf(stream, "# body: speed is relative to %s\n", ambient_name(b->relative));
-  if (*b->note) fprintf(stream, "# body: %s\n", b->note);
+  return s->settled ? "" : "no sediment: the interface still falls at the end of the run";
+}
+
+static void print_remarks(const struct analysis *a, FILE *stream)
+{
+  if (a->has_body) fprintf(stream, "# body: speed is relative to %s\n", ambient_name(a->body.relative));
+  if (a->has_body && *a->body.note) fprintf(stream, "# body: %s\n", a->body.note);
+  if (a->has_settling && *settling_note(&a->settling)) fprintf(stream, "# settling: %s\n", settling_note(&a->settling));
 }
 
 void analysis_print(const struct analysis *a, FILE *stream)
@@ -152,7 +159,7 @@ void analysis_print(const struct analysis *a, FILE *stream)
   const struct history *h = &a->history;
   fprintf(stream, "# %zu discs, %zu snapshots, steps %" PRId64 " to %" PRId64 "\n", h->discs, h->snapshots, h->step[0],
           h->step[h->snapshots - 1]);
-  if (a->has_body) print_remarks(&a->body, stream);
+  print_remarks(a, stream);
   for (const struct figure *k = figures.items; k < figures.items + figures.count; k++) {
     char name[64];
     snprintf(name, sizeof name, "%s.%s", k->part, k->name);
@@ -192,7 +199,7 @@ static void json_series(const struct settling *s, FILE *stream)
 }
 
 /* Opens the object of a part and writes its figures. */
-static void json_figures(const struct figures *figures, const char *part, bool first, FILE *stream)
+static void json_figures(const struct figures *figures, const char *part, bool first, const char *note, FILE *stream)
 {
   bool starts = true;
   fprintf(stream, "%s\n  \"%s\": {", first ? "" : ",", part);
@@ -202,7 +209,7 @@ static void json_figures(const struct figures *figures, const char *part, bool f
     json_number(k->value, stream);
     starts = false;
   }
-  if (strcmp(part, "body") == 0) fputs(starts ? "\n    " : ",\n    ", stream);
+  fprintf(stream, "%s\n    \"note\": \"%s\"", starts ? "" : ",", note);
 }
 
 void analysis_json(const struct analysis *a, FILE *stream)
@@ -210,15 +217,15 @@ void analysis_json(const struct analysis *a, FILE *stream)
   const struct figures figures = figures_of(a);
   fputs("{", stream);
   if (a->has_body) {
-    json_figures(&figures, "body", true, stream);
-    fprintf(stream, "\"note\": \"%s\"\n  }", a->body.note);
+    json_figures(&figures, "body", true, a->body.note, stream);
+    fputs("\n  }", stream);
   }
   if (a->has_pair) {
-    json_figures(&figures, "pair", true, stream);
+    json_figures(&figures, "pair", !a->has_body, "", stream);
     fputs("\n  }", stream);
   }
   if (a->has_settling) {
-    json_figures(&figures, "settling", !a->has_pair && !a->has_body, stream);
+    json_figures(&figures, "settling", !a->has_pair && !a->has_body, settling_note(&a->settling), stream);
     json_series(&a->settling, stream);
     fputs("\n  }", stream);
   }
@@ -231,7 +238,9 @@ void analysis_settling_csv(const struct settling *s, FILE *stream)
   for (int k = 1; k <= SETTLING_BANDS; k++) fprintf(stream, ",layer%d", k);
   fputs("\n", stream);
   for (size_t n = 0; n < s->snapshots; n++) {
-    fprintf(stream, "%" PRId64 ",%.17g,%.17g,%.17g", s->step[n], s->interface[n], s->front[n], s->mixing[n]);
+    fprintf(stream, "%" PRId64 ",%.17g,", s->step[n], s->interface[n]);
+    if (!isnan(s->front[n])) fprintf(stream, "%.17g", s->front[n]);
+    fprintf(stream, ",%.17g", s->mixing[n]);
     for (int k = 0; k < SETTLING_BANDS; k++) fprintf(stream, ",%.17g", s->band[n][k]);
     fputs("\n", stream);
   }

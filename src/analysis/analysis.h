@@ -29,7 +29,8 @@ void analysis_print(const struct analysis *analysis, FILE *stream);
 /* An object of an object for each part; the series of `settling` as arrays, null where a layer is empty. */
 void analysis_json(const struct analysis *analysis, FILE *stream);
 
-/* The series of `settling` as CSV: one row a snapshot (step, interface, front, mixing, and as layer1 .. the mean heights
+/* The series of `settling` as CSV: one row a snapshot (step, interface, front: empty without
+ * sediment, mixing, and as layer1 .. the mean heights
  * of the bands), or one row a snapshot and layer (step, height, concentration, lambda: empty without discs). */
 void analysis_settling_csv(const struct settling *settling, FILE *stream);
 void analysis_profile_csv(const struct settling *settling, FILE *stream);

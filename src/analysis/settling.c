@@ -161,25 +161,55 @@ static bool is_fitted(const struct settling *s, size_t snapshot)
   return whole > 0 && fallen >= 0.1 * whole && fallen <= 0.7 * whole;
 }
 
-/* The lines through interface and surface of the sediment. */
-static bool fit_fronts(struct settling *s, struct status *status)
+/* The line through the interface, and whether it has come to rest. `columns` has room for two numbers a snapshot. */
+static void fit_interface(struct settling *s, double *columns)
 {
-  double *columns = memory_allocate(3 * s->snapshots, sizeof *columns, "the fits", status);
-  if (!columns) return false;
-  double *step = columns, *fall = columns + s->snapshots, *rise = fall + s->snapshots, width = 0;
+  double *step = columns, *height = columns + s->snapshots;
+  const size_t last = s->snapshots - 1, tenth = s->snapshots > 20 ? s->snapshots / 10 : 2;
+  size_t count = 0;
+  for (size_t n = 0; n < s->snapshots; n++) {
+    if (!is_fitted(s, n)) continue;
+    step[count] = (double)s->step[n];
+    height[count++] = s->interface[n];
+  }
+  s->fall = fit_line(step, height, count);
+  for (size_t n = 0; n < s->snapshots; n++) step[n] = (double)s->step[n];
+  const size_t from = s->snapshots > tenth ? s->snapshots - tenth : 0;
+  const double end = -fit_line(step + from, s->interface + from, s->snapshots - from).slope;
+  const double mean = (s->interface[0] - s->interface[last]) / (step[last] - step[0]);
+  s->settled = !(end > settling_rest * (isnan(s->fall.slope) ? mean : -s->fall.slope));
+}
+
+/* The surface of the sediment and the line through it. */
+static void fit_front(struct settling *s, double *columns)
+{
+  double *step = columns, *rise = columns + s->snapshots, width = 0;
   const double between = s->bed - s->initial;
   size_t count = 0;
   for (size_t n = 0; n < s->snapshots; n++) {
     s->front[n] = height_of(s, n, s->initial + 0.5 * between);
     if (!is_fitted(s, n)) continue;
     step[count] = (double)s->step[n];
-    fall[count] = s->interface[n];
     rise[count++] = s->front[n];
     width += height_of(s, n, s->initial + 0.25 * between) - height_of(s, n, s->initial + 0.75 * between);
   }
-  s->fall = fit_line(step, fall, count);
   s->rise = fit_line(step, rise, count);
   s->sharpness = count ? width / (double)count : NAN;
+}
+
+/* The lines through interface and surface of the sediment, of which there is one only once all has settled. */
+static bool fit_fronts(struct settling *s, struct status *status)
+{
+  double *columns = memory_allocate(2 * s->snapshots, sizeof *columns, "the fits", status);
+  if (!columns) return false;
+  fit_interface(s, columns);
+  s->bed = s->sharpness = NAN;
+  s->rise = (struct line){NAN, NAN, NAN};
+  for (size_t n = 0; n < s->snapshots; n++) s->front[n] = NAN;
+  if (s->settled) {
+    s->bed = bed_of(s);
+    fit_front(s, columns);
+  }
   free(columns);
   return true;
 }
@@ -201,6 +231,8 @@ static struct line lambda_line(const struct settling *s, size_t snapshot, double
 /* The lines through Lambda in the sediment at the end, and above it when the interface has fallen half of its way. */
 static bool fit_lambda(struct settling *s, struct status *status)
 {
+  s->lambda_bed = s->lambda_above = (struct line){NAN, NAN, NAN};
+  if (!s->settled) return true;
   double *columns = memory_allocate(2 * s->layers, sizeof *columns, "the fits", status);
   if (!columns) return false;
   const size_t last = s->snapshots - 1;
@@ -288,7 +320,6 @@ bool settling_create(struct settling *s, const struct scene *scene, const struct
     add_lambda(&w, n);
   }
   if (ok) {
-    s->bed = bed_of(s);
     s->restless = fastest(history);
     ok = fit_fronts(s, status) && fit_lambda(s, status);
   }

@@ -10,6 +10,8 @@
  *   lambda         the mixing index (25) of Zhang et al. (2017): with l_0 a disc's layer at the first snapshot and
  *                  zeta = l_0/N_l, Lambda_l is the mean zeta of the discs that are in layer l now. At the first snapshot
  *                  it is l/N_l, the diagonal; where discs of every height are mixed it does not depend on l
+ *   settled        the interface falls over the last tenth of the snapshots (two at least) at no more than settling_rest
+ *                  of its fitted speed. Else there is no sediment yet: bed, front and what depends on them are NAN
  *   bed            mean concentration of the layers that reach into the second and third quarter of the final
  *                  interface's height
  *   mixing         of the bands, 0 where every square holds discs of one band and 1 where the shares of the bands in the
@@ -25,6 +27,9 @@
 #include "analysis/history.h"
 #include "scene/scene.h"
 
+/* Part of the speed of the interface at which a bed may still give way. */
+static const double settling_rest = 0.2;
+
 enum { SETTLING_BANDS = 5, SETTLING_LEAST = 20 };
 
 struct settling {
@@ -36,14 +41,15 @@ struct settling {
   double *concentration;              /* [snapshots][layers] */
   double *lambda;                     /* [snapshots][layers]; NAN without discs */
   double initial;                     /* mean concentration of the region that the discs fill at first */
-  double bed;                         /* of the last snapshot */
-  struct line fall;                   /* interface over steps, in the fitted part */
-  struct line rise;                   /* sediment's surface over steps, in the same part */
-  double sharpness;                   /* height over which concentration goes from 25 % to 75 % of the way between the
+  bool settled;
+  double bed;               /* of the last snapshot */
+  struct line fall;         /* interface over steps, in the fitted part */
+  struct line rise;         /* sediment's surface over steps, in the same part */
+  double sharpness;         /* height over which concentration goes from 25 % to 75 % of the way between the
                                               initial and the bed's, mean over the fitted part, cells */
-  struct line lambda_bed;             /* Lambda over height/box height in the sediment, last snapshot */
-  struct line lambda_above;           /* likewise between sediment and interface, when the interface has fallen half */
-  double restless;                    /* fastest disc of the last snapshot, cells/step */
+  struct line lambda_bed;   /* Lambda over height/box height in the sediment, last snapshot */
+  struct line lambda_above; /* likewise between sediment and interface, when the interface has fallen half */
+  double restless;          /* fastest disc of the last snapshot, cells/step */
 };
 
 /* True where gravity acts along -y on enough free discs for this to make sense. */

@@ -26,16 +26,14 @@ static void print_help(void)
       "  many discs settling  interface, sediment, concentration, mixing                      settling.*\n"
       "\n"
       "Speeds of body.* are relative to the fluid: to the stream of an inlet, to fluid at rest where walls close the\n"
-      "box, else to the mean velocity of the fluid at the end of the run. The terminal speed is the mean over the "
-      "last\n"
-      "stretch of five diameters or more whose thirds agree within 0.5 %; a line that begins with # says why there is\n"
-      "none, or that forces on held discs are not steady yet.\n"
+      "box, else to the mean velocity of the fluid at the end of the run. The terminal speed is the mean over the\n"
+      "last stretch of five diameters or more whose thirds agree within 0.5 %. Where there is no terminal speed or no\n"
+      "sediment yet, or where forces on held discs are not steady, a line that begins with # says so.\n"
       "\n"
       "  --json FILE  also writes the figures, and the series of settling, to FILE\n"
       "  --tables     also writes the series of settling to DIR/settling.csv (interface, sediment's surface, Lacey's\n"
-      "               mixing index, mean height of five bands) and DIR/profile.csv (concentration and the mixing "
-      "index\n"
-      "               lambda by height)\n"
+      "               mixing index, mean height of five bands) and DIR/profile.csv (by height: concentration, mixing\n"
+      "               index lambda)\n"
       "  --help       this text");
 }
 

@@ -58,6 +58,11 @@ static const char interface[] =
     "# In the folder of the run: gnuplot plots/interface.gp   (after delbm analyse DIR --tables, for settling.csv)\n"
     "load 'plots/case.gp'\n"
     "set output 'plots/interface.png'\n"
+    "stats 'settling.csv' using (strlen(stringcolumn('front')) > 0) nooutput\n"
+    "# without a sediment yet, no line\n"
+    "sediment = STATS_max > 0 ? \"'settling.csv' using 'step':'front' with lines linewidth 2 linecolor rgb '#c2481a' "
+    "\" \\\n"
+    "  . \"title 'sediment'\" : \"NaN notitle\"\n"
     "set xlabel 'step'\n"
     "set ylabel 'height / cells'\n"
     "set yrange [0:ny]\n"
@@ -66,7 +71,7 @@ static const char interface[] =
     "\\\n"
     "    title k == 1 ? 'bands' : '', \\\n"
     "  'settling.csv' using 'step':'interface' with lines linewidth 2 linecolor rgb '#2170be' title 'interface', \\\n"
-    "  'settling.csv' using 'step':'front' with lines linewidth 2 linecolor rgb '#c2481a' title 'sediment'\n";
+    "  @sediment\n";
 
 static const char mixing[] =
     "# Many discs settling: the mixing index lambda by height, at step 0 and five later steps. A disc's layer at step "
