@@ -8,7 +8,7 @@ set datafile separator ","
 # Frames of the run: the field of the fluid's speed, one scale for all, and discs by their height at step 0.
 set terminal pngcairo size 820, 860 font "sans,10"
 set output ARG1 . "/snapshots.png"
-set multiplot layout 2, 2 title "Fig. 12: discs by initial height on the fluid's speed, 0 to 0.06 cells/step"
+set multiplot layout 2, 2 title "Fig. 12: discs by initial height on the fluid's speed, 0 to 0.08 cells/step"
 set size ratio -1
 unset tics
 unset border
