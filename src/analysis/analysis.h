@@ -1,4 +1,4 @@
-/* What can be said about a finished run from its case.yaml and particles.csv. What a scene does not have is left out. */
+/* What can be said about a finished run from case.yaml, particles.csv and run.json. What a scene does not have is left out. */
 #ifndef DELBM_ANALYSIS_ANALYSIS_H
 #define DELBM_ANALYSIS_ANALYSIS_H
 

@@ -4,11 +4,11 @@
  *   free disc    U is the component along gravity's axis, positive in the sense in which the disc moves through the
  *                fluid at last. Its terminal value is the mean over a plateau (plateau.h) of at least five diameters of
  *                way through the fluid, which ends three diameters before a side that the disc approaches. Without a
- *                plateau there is no terminal speed and no coefficient, and `note` has the reason. C_D = pi R g (rho_s - rho)/(rho U^2) from
- *                the weight; and beside it as Zhang et al. (2017) print it, 8 R g (rho_s - rho)/(3 rho U^2), a sphere's.
- *                No C_D where the disc moves against its weight, as on the centre line of a channel whose mean velocity
- *                is less than the velocity there
- *                Shedding is sought in the lateral velocity over the second half of the fall
+ *                plateau there is no terminal speed and no coefficient, and `note` has the reason.
+ *                C_D = pi R g (rho_s - rho)/(rho U^2) from the weight; and beside it as Zhang et al. (2017) print it,
+ *                8 R g (rho_s - rho)/(3 rho U^2), a sphere's. No C_D where the disc moves against its weight, as on the
+ *                centre line of a channel whose mean velocity is less than the velocity there. Shedding is sought in
+ *                the lateral velocity over the second half of the fall
  *   held discs   fixed, or driven at one velocity; means per disc, R the mean radius. U from the ambient fluid and the
  *                discs' own velocity. C_D = F/(rho U^2 R) from the force along U, C_L = F/(rho U^2 R) from the force a
  *                quarter turn counter-clockwise from U, C_M = T/(rho U^2 R^2), over the last quarter of the run; and
