@@ -581,6 +581,31 @@ Test(scene, whole_number_may_have_an_exponent)
   release(&reading);
 }
 
+Test(scene, flag_may_be_any_word_for_a_truth_value_that_yaml_knows)
+{
+  static const struct {
+    const char *word;
+    bool flag;
+  } words[] = {{"true", true},   {"True", true},   {"TRUE", true},   {"yes", true},  {"Yes", true},  {"YES", true},
+               {"on", true},     {"On", true},     {"ON", true},     {"no", false},  {"No", false},  {"NO", false},
+               {"false", false}, {"False", false}, {"FALSE", false}, {"off", false}, {"Off", false}, {"OFF", false}};
+  static const char *const wrong[] = {"tRUE", "TRue", "TrUE", "oN", "\"yes\"", "y", "n", "1", "0", "yess", "o", "T"};
+  char set[128];
+  for (size_t i = 0; i < sizeof words / sizeof words[0]; i++) {
+    snprintf(set, sizeof set, "particles={density: 2, discs: [{radius: 5, position: [50, 50], fixed: %s}]}",
+             words[i].word);
+    struct scene scene = scene_with(set);
+    cr_expect_eq(scene.particles.discs[0].motion, words[i].flag ? DISC_FIXED : DISC_FREE, "%s", words[i].word);
+    scene_clear(&scene);
+  }
+  for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+    snprintf(set, sizeof set, "fluid.zero_flux=%s", wrong[i]);
+    struct reading reading = read_with(minimal, set);
+    cr_expect_not(reading.valid, "%s", wrong[i]);
+    release(&reading);
+  }
+}
+
 Test(scene, errors_beyond_the_limit_are_counted)
 {
   enum { WRONG = 5000 };

@@ -190,12 +190,33 @@ static bool is_null(const struct tree_node *node)
   return false;
 }
 
+/* The capital of a small letter, whatever the locale. */
+static char capital(char letter)
+{
+  return (char)(letter - 'a' + 'A');
+}
+
+/* True if the text is the word in lower case, in upper case, or with a capital: the spellings of YAML. */
+static bool is_word(const char *text, const char *word)
+{
+  if (strcmp(text, word) == 0) return true;
+  if (*text != capital(*word)) return false;
+  size_t k = 1;
+  while (word[k] && text[k] == capital(word[k])) k++;
+  return (text[k] == '\0' && word[k] == '\0') || strcmp(text + 1, word + 1) == 0;
+}
+
+/* The words for truth values are those of YAML 1.1. */
 static bool read_flag(const struct tree_node *node, unsigned char *field)
 {
-  bool flag = strcmp(node->text, "true") == 0;
-  if (!node->plain || (!flag && strcmp(node->text, "false") != 0)) return false;
-  memcpy(field, &flag, sizeof flag);
-  return true;
+  static const char *const words[][2] = {{"false", "true"}, {"no", "yes"}, {"off", "on"}};
+  for (size_t i = 0; node->plain && i < sizeof words / sizeof words[0]; i++) {
+    const bool flag = is_word(node->text, words[i][1]);
+    if (!flag && !is_word(node->text, words[i][0])) continue;
+    memcpy(field, &flag, sizeof flag);
+    return true;
+  }
+  return false;
 }
 
 static bool read_choice(const char *choices, const char *text, unsigned char *field)
