@@ -130,6 +130,24 @@ Test(program, exit_codes_tell_what_went_wrong)
   cr_expect_eq(shell("%s bench nosuch 2>err", DELBM), 2);
 }
 
+Test(program, suggests_near_spellings_and_nothing_far)
+{
+  static const struct {
+    const char *line, *near;
+  } cases[] = {
+      {"rnu x", "run"},         {"resum x", "resume"},   {"analyze x", "analyse"}, {"run --quite x", "--quiet"},
+      {"bench swepe", "sweep"}, {"bench dragg", "drag"}, {"make x", NULL},         {"rm x", NULL},
+      {"start x", NULL},        {"--where", NULL},       {"run --force x", NULL},  {"bench everything", NULL},
+      {"simulate case", NULL}};
+  for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+    cr_expect_eq(shell("%s %s 2>err >out", DELBM, cases[k].line), 2, "%s", cases[k].line);
+    char suggestion[64];
+    snprintf(suggestion, sizeof suggestion, "did you mean '%s'?", cases[k].near ? cases[k].near : "");
+    cr_expect_eq(contains("err", cases[k].near ? suggestion : "did you mean"), cases[k].near != NULL, "%s",
+                 cases[k].line);
+  }
+}
+
 Test(program, help_and_version_are_everywhere)
 {
   cr_expect_eq(shell("%s --version | grep -q '^delbm [0-9]'", DELBM), 0);

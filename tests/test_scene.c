@@ -440,6 +440,17 @@ Test(scene, override_that_is_wrong_is_named)
       {"fluid.viscosty=1", "--set fluid.viscosty=1: unknown key fluid.viscosty; did you mean fluid.viscosity?"},
       {"flud.viscosity=1", "--set flud.viscosity=1: unknown key flud; did you mean fluid?"},
       {"viscosity=1", "--set viscosity=1: unknown key viscosity; did you mean fluid.viscosity?"},
+      {"run.stpes=1", "--set run.stpes=1: unknown key run.stpes; did you mean run.steps?"},
+      {"run.duration=1", "--set run.duration=1: unknown key run.duration; expected one of steps, check, plan"},
+      {"output.frames_every=1",
+       "--set output.frames_every=1: unknown key output.frames_every; did you mean output.frames.every?"},
+      {"fluid.nu=1",
+       "--set fluid.nu=1: unknown key fluid.nu; expected one of viscosity, force, collision, rates, magic, "
+       "precision, zero_flux, kernel"},
+      {"gravity=[0, 1]", "--set gravity=[0, 1]: unknown key gravity; did you mean particles.gravity?"},
+      {"contact.friction=1",
+       "--set contact.friction=1: unknown key contact.friction; expected one of area, search, edge, "
+       "stiffness, alpha, damping, damping_form, substeps, steps_per_contact"},
       {"fluid.viscosity=thick",
        "--set fluid.viscosity=thick: fluid.viscosity: got thick; expected a number > 0 and <= 10"},
       {"domain.left=wal", "--set domain.left=wal: domain.left.type: got wal; expected wall, periodic, inlet or outlet"},

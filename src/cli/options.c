@@ -30,7 +30,7 @@ int report_error(const struct status *status)
 void suggestion_consider(struct suggestion *suggestion, const char *word)
 {
   size_t distance = edit_distance(suggestion->given, word);
-  if (distance > 1 + strlen(suggestion->given) / 3 || (suggestion->nearest && distance >= suggestion->distance)) return;
+  if (!words_are_near(suggestion->given, distance) || (suggestion->nearest && distance >= suggestion->distance)) return;
   suggestion->nearest = word;
   suggestion->distance = distance;
 }

@@ -64,11 +64,15 @@ static bool refuse_unknown(const struct draft *draft, const struct place *place,
     return false;
   }
   const struct path path = {place->path, key->text, 0};
-  char where[TREE_PLACE], shown[SHOWN_PATH], nearest[KEY_PATH];
+  char where[TREE_PLACE], shown[SHOWN_PATH], nearest[KEY_PATH], names[VALUE_TEXT];
   tree_place(key, where);
   print_path(&path, shown);
-  key_nearest(place->section, key->text, nearest);
-  scene_errors_add(draft->errors, "%s: unknown key %s; did you mean %s?", where, shown, nearest);
+  if (key_nearest(place->section, key->text, nearest)) {
+    scene_errors_add(draft->errors, "%s: unknown key %s; did you mean %s?", where, shown, nearest);
+    return false;
+  }
+  key_names(place->section, names, sizeof names);
+  scene_errors_add(draft->errors, "%s: unknown key %s; expected one of %s", where, shown, names);
   return false;
 }
 

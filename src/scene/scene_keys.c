@@ -89,18 +89,22 @@ static const char *last_name(const char *path)
   return dot ? dot + 1 : path;
 }
 
-/* How unlike `name` in `section` a path of the table is. Names of the same section are compared alone. For another
- * section the whole paths are or, if they have much in common, the names, both at a price: in doubt it is a slip in the
- * same section. */
+/* How unlike `name` in `section` a path of the table is; SIZE_MAX where it is not near. Names of the same section are
+ * compared alone. For another section the whole paths and the names are, both at a price: in doubt it is a slip in the same
+ * section. */
 static size_t unlikeness(const char *section, const char *name, const char *candidate)
 {
   const char *rest = key_within(candidate, section);
-  if (rest && !strchr(rest, '.')) return edit_distance(name, rest);
+  if (rest && !strchr(rest, '.')) {
+    const size_t distance = edit_distance(name, rest);
+    return words_are_near(name, distance) ? distance : SIZE_MAX;
+  }
   char full[2 * KEY_PATH];
   snprintf(full, sizeof full, "%.*s%s%.*s", KEY_PATH - 2, section, *section ? "." : "", KEY_PATH - 1, name);
-  size_t whole = edit_distance(full, candidate) + 1;
-  size_t last = edit_distance(name, last_name(candidate));
-  return 2 * last < strlen(name) && last + 2 < whole ? last + 2 : whole;
+  const size_t whole = edit_distance(full, candidate), last = edit_distance(name, last_name(candidate));
+  const size_t by_path = words_are_near(name, whole) ? whole + 1 : SIZE_MAX;
+  const size_t by_name = words_are_near(name, last) ? last + 2 : SIZE_MAX;
+  return by_path < by_name ? by_path : by_name;
 }
 
 struct nearest {
@@ -123,7 +127,7 @@ static void consider(struct nearest *nearest, const char *path, size_t length)
   snprintf(nearest->path, KEY_PATH, "%s", candidate);
 }
 
-void key_nearest(const char *section, const char *name, char path[KEY_PATH])
+bool key_nearest(const char *section, const char *name, char path[KEY_PATH])
 {
   struct nearest nearest = {section, name, path, SIZE_MAX};
   for (size_t i = 0; i < table_count; i++) {
@@ -132,6 +136,7 @@ void key_nearest(const char *section, const char *name, char path[KEY_PATH])
       consider(&nearest, table[i].path, (size_t)(end - table[i].path));
     }
   }
+  return nearest.distance < SIZE_MAX;
 }
 
 static void print_fallback(const struct key *key, FILE *file)

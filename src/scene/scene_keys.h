@@ -50,8 +50,8 @@ enum key_role key_role(const char *section, const char *name, const struct key *
 /* The names that a section holds, in a list. */
 void key_names(const char *section, char *text, size_t size);
 
-/* The path of the key, section or list in the table that is most like `name` in a section. */
-void key_nearest(const char *section, const char *name, char path[KEY_PATH]);
+/* The path of the key, section or list in the table that may be meant by `name` in a section. False if none is near. */
+bool key_nearest(const char *section, const char *name, char path[KEY_PATH]);
 
 /* Prints the key reference: every key with what is allowed, its unit, its default and a line of help. */
 void scene_print_keys(FILE *file);
