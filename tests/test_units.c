@@ -123,6 +123,83 @@ Test(case_in_si, resumed_ends_with_the_same_table)
   cr_expect_eq(shell("grep -v ^250 b/particles.csv | cmp - a/particles.csv"), 0);
 }
 
+/* Cells of 0.15 mm and, by the viscosity, steps of 1.125 ms. */
+static const char *const not_whole =
+    "units: {dx: 0.15 mm, viscosity: 0.05, density: 1000 kg/m^3}\n"
+    "domain: {size: [2 cm, 4 cm]}\n"
+    "fluid: {viscosity: 1e-6 m^2/s}\n"
+    "particles: {density: 1.05, gravity: [0, -0.981 m/s^2], discs: [{radius: 1 mm, position: [1 cm, 3.5 cm]}]}\n"
+    "run: {steps: 0.2 s}\n"
+    "output: {every: 10 ms, checkpoint: {every: 0.1 s}, fields: {every: 0, region: [0, 0, 1 cm, 1 cm]}}\n";
+
+Test(case_in_si, of_lengths_and_times_that_are_not_whole_is_rounded_with_a_note_and_written_as_run)
+{
+  static const char *const lines[] = {
+      "si.yaml:2:17: domain.size: 2 cm is 133.333 cells; rounded to 133, which is 1.995 cm",
+      "si.yaml:2:23: domain.size: 4 cm is 266.667 cells; rounded to 267, which is 4.005 cm",
+      "si.yaml:5:14: run.steps: 0.2 s is 177.778 steps; rounded to 178, which is 0.20025 s",
+      "si.yaml:6:17: output.every: 10 ms is 8.88889 steps; rounded to 9, which is 10.125 ms",
+      "si.yaml:6:44: output.checkpoint.every: 0.1 s is 88.8889 steps; rounded to 89, which is 0.100125 s",
+      "si.yaml:6:86: output.fields.region: 1 cm is 66.6667 cells; rounded to 67, which is 1.005 cm"};
+  shell_write("si.yaml", not_whole);
+  cr_assert_eq(shell("$DELBM run si.yaml --out o 2>err >out && $DELBM info si.yaml >i"), 0);
+  for (size_t k = 0; k < sizeof lines / sizeof lines[0]; k++) {
+    cr_expect_eq(shell("grep -qxF 'delbm: note: %s' err", lines[k]), 0, "%s", lines[k]);
+    cr_expect_eq(shell("grep -qxF '  note: %s' i", lines[k]), 0, "%s", lines[k]);
+  }
+  cr_expect_eq(shell("test $(grep -c rounded err) = 7 && test $(grep -c rounded i) = 7"), 0);
+  cr_expect_eq(shell("grep -qxF '  size: [133, 267]' o/case.yaml && grep -qxF '  steps: 178' o/case.yaml && "
+                     "grep -q 'every: 9$' o/case.yaml && grep -qF 'region: [0, 0, 67, 67]' o/case.yaml"),
+               0);
+  cr_expect_eq(shell("$DELBM run o/case.yaml --out again 2>err >out && ! grep rounded err && "
+                     "cmp o/particles.csv again/particles.csv"),
+               0);
+  cr_expect_eq(shell("$DELBM run si.yaml --quiet --out o 2>err >out && ! grep rounded err"), 0);
+}
+
+Test(case_in_si, is_rounded_by_a_tenth_at_most_and_never_to_zero)
+{
+  static const struct {
+    const char *setting, *words;
+  } refused[] = {
+      {"run.steps=2.7 ms", "it is 2.4 steps; nearest: 2.25 ms or 3.375 ms"},
+      {"run.steps=0.1 ms", "it is 0.08888888889 steps; nearest: 1.125 ms"},
+      {"output.every=500 us", "it is 0.4444444444 steps; nearest: 1125 us"},
+      {"domain.size=[0.2 mm, 4 cm]", "it is 1.333333333 cells; nearest: 0.15 mm or 0.3 mm"},
+      {"run.check=114 ms", "expected a whole number >= 1 and <= 100; it is 101 steps"},
+      {"output.fields.stride=0.68 mm", "it is 4.533333333 cells; nearest: 0.6 mm or 0.75 mm"},
+      {"run.steps=-2.02 s", "it is -1796 steps"},
+      {"run.steps=2.4", "expected a whole number >= 0 and <= 1000000000000"},
+  };
+  static const char *const taken[] = {"run.steps=12.4 ms", "run.steps=10.1 ms", "domain.size=[1.58 mm, 1.67 mm]",
+                                      "run.steps=0 s", "output.every=1.2 ms"};
+  shell_write("si.yaml", not_whole);
+  for (size_t k = 0; k < sizeof refused / sizeof refused[0]; k++) {
+    cr_expect_eq(shell("$DELBM info si.yaml --set particles={} --set output={} --set '%s' >i 2>err; test $? = 3 && "
+                       "grep -qF '%s' err",
+                       refused[k].setting, refused[k].words),
+                 0, "%s", refused[k].setting);
+  }
+  for (size_t k = 0; k < sizeof taken / sizeof taken[0]; k++)
+    cr_expect_eq(shell("$DELBM info si.yaml --set particles={} --set output={} --set '%s' >i", taken[k]), 0, "%s",
+                 taken[k]);
+}
+
+Test(case_in_si, with_a_region_of_the_whole_box_is_valid_also_where_the_box_is_rounded_down)
+{
+  shell_write("si.yaml", not_whole);
+  const char *const fill = "--set 'particles={density: 2, fill: {radius: 0.5 mm, spacing: 1.5 mm, region: [0, 0, %s, 4 "
+                           "cm]}}' --set output={}";
+  char command[512];
+  snprintf(command, sizeof command, fill, "2 cm");
+  cr_expect_eq(shell("$DELBM run si.yaml %s --set run.steps=0 --quiet --out o >out && "
+                     "grep -qF 'region: [0, 0, 133, 266.666' o/case.yaml",
+                     command),
+               0);
+  snprintf(command, sizeof command, fill, "2.01 cm");
+  cr_expect_eq(shell("$DELBM info si.yaml %s >i 2>err; test $? = 3 && grep -q 'x1 <= 133 ' err", command), 0);
+}
+
 Test(case_in_si, info_says_what_a_cell_and_a_step_are_and_what_to_change)
 {
   shell_write("si.yaml", in_si);

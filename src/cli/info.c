@@ -255,7 +255,7 @@ static void print_stages(const struct scene *scene, const struct plan *plan)
          plan->force ? ", with force" : ", no force");
 }
 
-static int print_case(const struct scene *scene)
+static int print_case(const struct scene *scene, struct scene_errors *notes)
 {
   struct status status;
   const struct plan plan = plan_of(scene);
@@ -266,6 +266,7 @@ static int print_case(const struct scene *scene)
   printf("case         %s%s%s\n", scene->name, *title ? ": " : "", title);
   print_box(scene);
   print_units(scene);
+  notes_print(notes, "  note: ", stdout);
   print_fluid(scene);
   print_speeds(scene);
   if (plan.exchange) print_discs(scene);
@@ -294,9 +295,11 @@ int command_info(int argc, char **argv)
     free(settings.items);
     return code;
   }
+  struct scene_errors notes = {0};
   const char *path = option_operand(argc, argv, "CASE");
-  int code = path ? case_read(&scene, path, &settings) : DELBM_USAGE;
-  if (code == DELBM_OK) code = print_case(&scene);
+  int code = path ? case_read(&scene, path, &settings, &notes) : DELBM_USAGE;
+  if (code == DELBM_OK) code = print_case(&scene, &notes);
+  scene_errors_clear(&notes);
   scene_clear(&scene);
   free(settings.items);
   return code;

@@ -86,13 +86,20 @@ int settings_add(struct settings *settings, char *setting, int argc, char **argv
   return DELBM_OK;
 }
 
-int case_read(struct scene *scene, const char *path, const struct settings *settings)
+int case_read(struct scene *scene, const char *path, const struct settings *settings, struct scene_errors *notes)
 {
-  struct scene_errors errors = {0};
+  struct scene_errors errors = {.notes = notes};
   struct status status;
   bool read = scene_read(scene, path, settings->items, settings->count, &errors, &status);
   if (!read && scene_errors_total(&errors) == 0) report_error(&status);
   scene_errors_print(&errors, stderr);
   scene_errors_clear(&errors);
   return read ? DELBM_OK : (int)status.code;
+}
+
+void notes_print(struct scene_errors *notes, const char *before, FILE *file)
+{
+  for (size_t i = 0; i < notes->count; i++) fprintf(file, "%s%s\n", before, notes->lines[i]);
+  if (notes->dropped > 0) fprintf(file, "%s%zu more values are rounded\n", before, notes->dropped);
+  scene_errors_clear(notes);
 }

@@ -123,7 +123,10 @@ static int run_in_directory(const struct scene *scene, const struct run_request 
 static int run_case(const struct run_request *options)
 {
   struct scene scene = {0};
-  int code = case_read(&scene, options->path, &options->settings);
+  struct scene_errors notes = {0};
+  int code = case_read(&scene, options->path, &options->settings, &notes);
+  if (code == DELBM_OK && !options->quiet) notes_print(&notes, "delbm: note: ", stderr);
+  scene_errors_clear(&notes);
   if (code != DELBM_OK) return code;
   struct status status;
   char *standard = file_join("out", scene.name, &status);

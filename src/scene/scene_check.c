@@ -306,9 +306,18 @@ static void check_count(struct draft *draft, const double region[4])
                  most_discs, discs, discs * sizeof(struct disc_spec) / gib);
 }
 
+/* A region that ended with the box ends with it also where the box has been rounded to whole cells. */
+static void end_with_box(const struct draft *draft, double region[4])
+{
+  for (int axis = 0; axis < 2; axis++) {
+    const double size = draft->scene.domain.size[axis];
+    if (region[2 + axis] > size && region[2 + axis] <= draft->size_as_given[axis]) region[2 + axis] = size;
+  }
+}
+
 static void check_fill(struct draft *draft)
 {
-  const struct fill_spec *fill = &draft->scene.particles.fill;
+  struct fill_spec *fill = &draft->scene.particles.fill;
   const bool radius = draft_knows(draft, "particles.fill.radius");
   const bool spacing = draft_knows(draft, "particles.fill.spacing");
   const bool region = draft_knows(draft, "particles.fill.region") && draft_knows(draft, "domain.size");
@@ -320,21 +329,20 @@ static void check_fill(struct draft *draft)
     draft_refuse(draft, "particles.fill.jitter", "at most half the spacing = %g", fill->spacing / 2);
   if (!region) return;
   double box[4];
+  end_with_box(draft, fill->region);
   draft_fill_region(draft, box);
   if (check_region(draft, box) && spacing) check_count(draft, box);
 }
 
-/* The part of the box that fields show: whole cells, at least one. */
+/* The part of the box that fields show: at least one cell. */
 static void check_shown(struct draft *draft)
 {
   const double *region = draft->scene.output.fields.region;
   const int *size = draft->scene.domain.size;
   static const char path[] = "output.fields.region";
   if (!draft_gives(draft, path) || !draft_knows(draft, path) || !draft_knows(draft, "domain.size")) return;
-  bool whole = true;
-  for (int k = 0; k < 4; k++) whole = whole && region[k] == floor(region[k]);
-  if (!whole || !(region[0] < region[2] && region[1] < region[3] && region[2] <= size[0] && region[3] <= size[1]))
-    draft_refuse(draft, path, "whole cells, 0 <= x0 < x1 <= %d and 0 <= y0 < y1 <= %d", size[0], size[1]);
+  if (!(region[0] < region[2] && region[1] < region[3] && region[2] <= size[0] && region[3] <= size[1]))
+    draft_refuse(draft, path, "0 <= x0 < x1 <= %d and 0 <= y0 < y1 <= %d", size[0], size[1]);
 }
 
 bool scene_check(struct draft *draft, struct status *status)

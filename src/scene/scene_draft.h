@@ -24,6 +24,7 @@ struct draft {
   double magic;             /* 0: not given */
   double lattice_viscosity; /* units.viscosity; 0: not given */
   double density;           /* particles.density; 0: not given */
+  double size_as_given[2];  /* domain.size before it was rounded to whole cells; 0: it was not */
 };
 
 /* True if the case gives the key (with any value). */

@@ -10,7 +10,8 @@ enum { SCENE_ERRORS_KEPT = 1000 };
 
 /* All zero is an empty list. */
 struct scene_errors {
-  char **lines; /* [count] */
+  struct scene_errors *notes; /* for lines on what is taken otherwise than it is written; NULL: not wanted */
+  char **lines;               /* [count] */
   size_t count;
   size_t capacity;
   size_t dropped; /* further errors, past SCENE_ERRORS_KEPT or for want of memory, of which only the number is known */
@@ -27,7 +28,7 @@ size_t scene_errors_total(const struct scene_errors *errors);
 /* One error a line, and a last line with the number of those dropped. */
 void scene_errors_print(const struct scene_errors *errors, FILE *file);
 
-/* Releases the lines and leaves an empty list. */
+/* Releases the lines and leaves an empty list; the notes are the caller's. */
 void scene_errors_clear(struct scene_errors *errors);
 
 #endif

@@ -88,10 +88,31 @@ static bool refuse_missing(const struct draft *draft, const struct place *place,
   return false;
 }
 
-static bool read_key(const struct draft *draft, const struct key *key, const struct path *path, struct tree_node *node,
+/* Notes where numbers of the node have been rounded to whole ones. */
+static void note_rounding(struct draft *draft, const struct key *key, const struct path *path,
+                          const struct tree_node *node)
+{
+  const size_t count = node->kind == TREE_LIST ? node->count : 1;
+  for (size_t i = 0; i < count; i++) {
+    const struct tree_node *number = node->kind == TREE_LIST ? node->entries[i].value : node;
+    char words[VALUE_TEXT], where[TREE_PLACE], shown[SHOWN_PATH];
+    const double given = value_rounding(key, number, &draft->scene.units, words);
+    if (given == 0) continue;
+    if (strcmp(key->path, "domain.size") == 0) draft->size_as_given[i] = given;
+    if (!draft->errors->notes) continue;
+    tree_place(number, where);
+    print_path(path, shown);
+    scene_errors_add(draft->errors->notes, "%s: %s: %s", where, shown, words);
+  }
+}
+
+static bool read_key(struct draft *draft, const struct key *key, const struct path *path, struct tree_node *node,
                      void *owner)
 {
-  if (value_read(key, node, &draft->scene.units, owner)) return true;
+  if (value_read(key, node, &draft->scene.units, owner)) {
+    note_rounding(draft, key, path, node);
+    return true;
+  }
   if (draft_gives(draft, "units") && value_lacks_units(key, node, &draft->scene.units)) {
     node->refused = true; /* what is wrong is the units block, and is told there */
     return false;

@@ -18,7 +18,8 @@ enum key_kind {
   KEY_NUMBER,  /* double */
   KEY_POINT,   /* double[2] */
   KEY_VECTOR,  /* double[2], the range being that of its length */
-  KEY_BOX      /* double[4] */
+  KEY_BOX,     /* double[4] */
+  KEY_CELLS    /* double[4], whole numbers */
 };
 
 struct key {

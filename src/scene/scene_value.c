@@ -18,6 +18,7 @@ static size_t components(enum key_kind kind)
 {
   switch (kind) {
   case KEY_BOX:
+  case KEY_CELLS:
     return 4;
   case KEY_SIZE:
   case KEY_POINT:
@@ -30,7 +31,13 @@ static size_t components(enum key_kind kind)
 
 static bool is_integral(enum key_kind kind)
 {
-  return kind == KEY_INTEGER || kind == KEY_LONG || kind == KEY_SIZE;
+  return kind == KEY_INTEGER || kind == KEY_LONG || kind == KEY_SIZE || kind == KEY_CELLS;
+}
+
+/* True if such a number is stored as an int. */
+static bool is_int(enum key_kind kind)
+{
+  return kind == KEY_INTEGER || kind == KEY_SIZE;
 }
 
 static bool is_numeric(enum key_kind kind)
@@ -101,8 +108,11 @@ enum fault {
   FAULT_DIMENSION,     /* the unit is of something else */
   FAULT_WITHOUT_UNIT,  /* it needs a unit */
   FAULT_WITHOUT_UNITS, /* there is no units block that could convert it */
-  FAULT_NOT_WHOLE      /* once converted */
+  FAULT_NOT_WHOLE      /* once converted, nor near to one */
 };
+
+/* Largest change of a converted number by rounding to a whole one, as a part of it. One below 1e-9 is round-off. */
+static const double most_rounding = 0.1;
 
 /* A number with a unit, in the key's own. */
 static enum fault convert(const struct key *key, const char *text, const struct units *units, double *number)
@@ -115,7 +125,7 @@ static enum fault convert(const struct key *key, const char *text, const struct 
   *number = unit_convert(*number, &from, &to);
   if (!is_integral(key->kind)) return FAULT_NONE;
   const double whole = round(*number);
-  if (fabs(*number - whole) > 1e-9 * fabs(whole)) return FAULT_NOT_WHOLE;
+  if (fabs(*number - whole) > most_rounding * fabs(*number)) return FAULT_NOT_WHOLE;
   *number = whole;
   return FAULT_NONE;
 }
@@ -172,7 +182,7 @@ static void store_numbers(const struct key *key, const double *numbers, unsigned
     if (key->kind == KEY_LONG) {
       int64_t wide = (int64_t)numbers[i];
       memcpy(field + i * sizeof wide, &wide, sizeof wide);
-    } else if (is_integral(key->kind)) {
+    } else if (is_int(key->kind)) {
       int narrow = (int)numbers[i];
       memcpy(field + i * sizeof narrow, &narrow, sizeof narrow);
     } else {
@@ -267,7 +277,7 @@ static void format_component(const struct key *key, const unsigned char *field, 
     int64_t wide;
     memcpy(&wide, field + i * sizeof wide, sizeof wide);
     snprintf(text, 32, "%lld", (long long)wide);
-  } else if (is_integral(key->kind)) {
+  } else if (is_int(key->kind)) {
     int narrow;
     memcpy(&narrow, field + i * sizeof narrow, sizeof narrow);
     snprintf(text, 32, "%d", narrow);
@@ -367,6 +377,7 @@ void value_describe(const struct key *key, char text[VALUE_TEXT])
       [KEY_POINT] = "[x, y]",
       [KEY_VECTOR] = "[x, y] of length",
       [KEY_BOX] = "[x0, y0, x1, y1], numbers",
+      [KEY_CELLS] = "[x0, y0, x1, y1], whole numbers",
   };
   struct phrase phrase = {text, 0};
   say(&phrase, "%s%s", key_is_automatic(key) ? "auto or " : "", nouns[key->kind]);
@@ -374,20 +385,62 @@ void value_describe(const struct key *key, char text[VALUE_TEXT])
   if (is_numeric(key->kind)) describe_range(&phrase, key);
 }
 
-/* The first number of the node, or of its list, that has a fault or, if none has, a unit. */
+/* The first number of the node, or of its list, that has a fault or, if none has, the last with a unit: its value in the
+ * key's unit, and its unit as written. */
 static enum fault find_fault(const struct key *key, const struct tree_node *node, const struct units *units,
-                             double *number, bool *converted)
+                             double *number, const char **unit)
 {
   const size_t count = node->kind == TREE_LIST ? node->count : 1;
   enum fault fault = FAULT_NONE;
-  *converted = false;
-  for (size_t i = 0; i < count && !fault && !*converted; i++) {
+  *unit = "";
+  for (size_t i = 0; i < count && !fault; i++) {
     const struct tree_node *at = node->kind == TREE_LIST ? node->entries[i].value : node;
     const char *end = at->kind == TREE_SCALAR && at->plain ? decimal_end(at->text) : NULL;
-    fault = end ? read_number(key, at, units, number) : FAULT_NONE;
-    *converted = end && *end;
+    double found = 0;
+    fault = end ? read_number(key, at, units, &found) : FAULT_NONE;
+    if (!end || (*end == '\0' && !fault)) continue;
+    *number = found;
+    *unit = end;
   }
   return fault;
+}
+
+/* A number of the key's unit in one as written, such as " ms". */
+static double in_unit(const struct key *key, double number, const char *unit, const struct units *units)
+{
+  struct unit from, to;
+  const bool known = unit_parse(key->unit, units, &from) && unit_parse(unit, units, &to);
+  return known ? unit_convert(number, &from, &to) : NAN;
+}
+
+/* The whole numbers beside one that is none, in the unit that it has; not 0, which has a meaning of its own. */
+static void say_nearest(struct phrase *phrase, const struct key *key, double number, const char *unit,
+                        const struct units *units)
+{
+  const double whole[] = {floor(number), ceil(number)};
+  const char *before = "; nearest: ";
+  struct range range;
+  parse_range(key->allowed, &range);
+  for (int k = 0; k < 2; k++) {
+    if (whole[k] == 0 || !in_range(&range, whole[k])) continue;
+    say(phrase, "%s%.10g %s", before, in_unit(key, whole[k], unit, units), unit + strspn(unit, " "));
+    before = " or ";
+  }
+}
+
+double value_rounding(const struct key *key, const struct tree_node *node, const struct units *units,
+                      char text[VALUE_TEXT])
+{
+  const char *end = node->kind == TREE_SCALAR && node->plain ? decimal_end(node->text) : NULL;
+  struct unit from, to;
+  struct phrase phrase = {text, 0};
+  if (!is_integral(key->kind) || !end || *end == '\0') return 0;
+  if (!unit_parse(end, units, &from) || !unit_parse(key->unit, units, &to)) return 0;
+  const double number = unit_convert(strtod(node->text, NULL), &from, &to), whole = round(number);
+  if (fabs(number - whole) <= 1e-9 * fabs(whole)) return 0;
+  say(&phrase, "%s is %.6g %s; rounded to %.15g, which is %.6g %s", node->text, number, key->unit, whole,
+      in_unit(key, whole, end, units), end + strspn(end, " "));
+  return number;
 }
 
 /* "cells/step or m/s"; a number alone if the key has no such unit. */
@@ -410,17 +463,17 @@ static void say_units(struct phrase *phrase, const struct key *key)
 bool value_lacks_units(const struct key *key, const struct tree_node *node, const struct units *units)
 {
   double number;
-  bool converted;
+  const char *unit;
   return is_numeric(key->kind) && (units->dx == 0 || units->dt == 0) &&
-         find_fault(key, node, units, &number, &converted) == FAULT_WITHOUT_UNITS;
+         find_fault(key, node, units, &number, &unit) == FAULT_WITHOUT_UNITS;
 }
 
 void value_expect(const struct key *key, const struct tree_node *node, const struct units *units, char text[VALUE_TEXT])
 {
   struct phrase phrase = {text, 0};
   double number = 0;
-  bool converted;
-  const enum fault fault = is_numeric(key->kind) ? find_fault(key, node, units, &number, &converted) : FAULT_NUMBER;
+  const char *unit = "";
+  const enum fault fault = is_numeric(key->kind) ? find_fault(key, node, units, &number, &unit) : FAULT_NUMBER;
   if (fault == FAULT_UNIT || fault == FAULT_DIMENSION) {
     say_units(&phrase, key);
   } else if (fault == FAULT_WITHOUT_UNITS && units->dx > 0 && units->dt > 0) {
@@ -434,7 +487,7 @@ void value_expect(const struct key *key, const struct tree_node *node, const str
     value_describe(key, text);
     phrase.length = strlen(text);
     if (fault == FAULT_WITHOUT_UNIT) say(&phrase, " with its unit, such as 1 %s", key->unit);
-    if (fault == FAULT_NOT_WHOLE || (fault == FAULT_NONE && converted))
-      say(&phrase, "; it is %.10g %s", number, key->unit);
+    if (fault == FAULT_NOT_WHOLE || (fault == FAULT_NONE && *unit)) say(&phrase, "; it is %.10g %s", number, key->unit);
+    if (fault == FAULT_NOT_WHOLE) say_nearest(&phrase, key, number, unit, units);
   }
 }
