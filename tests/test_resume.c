@@ -227,6 +227,21 @@ Test(checkpoint, whose_head_tells_another_step_than_its_state_is_refused_though_
   shell_leave();
 }
 
+Test(checkpoint, of_a_case_in_other_units_is_of_another_case)
+{
+  struct scene scene = scene_crowd(100, 100, 7, 16, 0.9);
+  const struct units units[] = {{0}, {1e-4, 1e-3, 0}, {2e-4, 1e-3, 0}, {1e-4, 2e-3, 0}, {1e-4, 1e-3, 1000}};
+  enum { COUNT = sizeof units / sizeof units[0] };
+  uint32_t sums[COUNT];
+  struct status status;
+  for (int k = 0; k < COUNT; k++) {
+    scene.units = units[k];
+    cr_assert(scene_fingerprint(&scene, &sums[k], &status));
+    for (int before = 0; before < k; before++) cr_expect_neq(sums[k], sums[before], "%d and %d", before, k);
+  }
+  scene_clear(&scene);
+}
+
 /* The rest is from outside. */
 TestSuite(resume, .init = shell_enter, .fini = shell_leave, .timeout = 120 * SLOWNESS);
 
@@ -372,7 +387,7 @@ Test(resume, refuses_what_is_damaged_or_foreign_and_says_why)
                      "cp other/checkpoint.0 cut/; $DELBM resume cut 2>err"),
                4);
   cr_expect_eq(
-      shell("grep -q 'cut/checkpoint.0: of another case: domain, fluid, coupling, particles or contact differ' "
+      shell("grep -q 'cut/checkpoint.0: of another case: domain, fluid, units, coupling, particles or contact differ' "
             "err"),
       0);
   /* of another format, found before the checksum is */

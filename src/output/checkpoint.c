@@ -57,7 +57,7 @@ static bool check_head(const char *path, const struct checkpoint_head *head, uin
     return status_fail(status, DELBM_IO, "%s: of format %u; this delbm (%s) reads format %d", path, head->format,
                        DELBM_VERSION, FORMAT);
   if (head->fingerprint != fingerprint)
-    return refuse(status, path, "of another case: domain, fluid, coupling, particles or contact differ");
+    return refuse(status, path, "of another case: domain, fluid, units, coupling, particles or contact differ");
   return true;
 }
 

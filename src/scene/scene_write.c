@@ -186,23 +186,23 @@ static size_t write_rows(const struct draft *draft, const struct key *key, const
   return rows.count;
 }
 
-/* True for the sections that decide the course of a simulation. */
-static bool is_physics(const struct key *key)
+/* True for the sections that decide what the numbers of a run are and mean. */
+static bool is_compared(const struct key *key)
 {
-  static const char *const sections[] = {"domain", "fluid", "coupling", "particles", "contact"};
+  static const char *const sections[] = {"domain", "fluid", "units", "coupling", "particles", "contact"};
   for (size_t i = 0; i < sizeof sections / sizeof sections[0]; i++)
     if (key_within(key->path, sections[i])) return true;
   return false;
 }
 
 /* The case, or those of its sections alone. */
-static void write_case(const struct scene *scene, bool physics_alone, FILE *file)
+static void write_case(const struct scene *scene, bool compared_alone, FILE *file)
 {
   const struct draft draft = draft_from_scene(scene);
   size_t count;
   const struct key *keys = key_table(&count);
   for (size_t i = 0; i < count;) {
-    if (physics_alone && !is_physics(&keys[i])) {
+    if (compared_alone && !is_compared(&keys[i])) {
       i++;
       continue;
     }

@@ -10,8 +10,8 @@
  * are left to be drawn again. False if writing failed. */
 bool scene_write(const struct scene *scene, FILE *file);
 
-/* A sum (CRC-32) over what decides the course of a simulation: domain, fluid, coupling, particles and contact as
- * scene_write writes them, not the length of the run nor what is written of it. */
+/* A sum (CRC-32) over what decides the course of a simulation and what its numbers mean: domain, fluid, units, coupling,
+ * particles and contact as scene_write writes them, not the length of the run nor what is written of it. */
 bool scene_fingerprint(const struct scene *scene, uint32_t *fingerprint, struct status *status);
 
 #endif
