@@ -12,6 +12,9 @@
 /* The fastest that a disc's rim or a fluid may be set to move, for the Mach number's sake; cells/step. */
 static const double scene_most_speed = 0.3;
 
+/* The most that is advised, Mach 0.17: errors of compressibility grow with the square of the Mach number. cells/step. */
+static const double scene_advised_speed = 0.1;
+
 enum side_name { SIDE_LEFT, SIDE_RIGHT, SIDE_BOTTOM, SIDE_TOP, SIDE_COUNT };
 enum side_type { SIDE_WALL, SIDE_PERIODIC, SIDE_INLET, SIDE_OUTLET };
 enum collision { COLLISION_BGK, COLLISION_TRT, COLLISION_MRT, COLLISION_ADAPTIVE };

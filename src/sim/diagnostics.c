@@ -83,6 +83,19 @@ struct worst_cell diagnostics_worst(const struct populations *p, scan_row *scan)
   return worst_of_row(p, row);
 }
 
+double diagnostics_largest_speed(const struct populations *p)
+{
+  double largest = 0;
+#pragma omp parallel for schedule(static) reduction(max : largest) num_threads(threads_for((int64_t)p->nx * p->ny))
+  for (int y = 0; y < p->ny; y++)
+    for (int x = 0; x < p->nx; x++) {
+      const struct cell_moments m = moments_at(p, x, y);
+      const double speed = hypot(m.jx, m.jy) / fabs(1 + m.excess);
+      if (isfinite(speed) && speed > largest) largest = speed;
+    }
+  return largest;
+}
+
 void diagnostics_row(const struct populations *p, const struct fluid_force *force, int y, double *density, double *ux,
                      double *uy)
 {

@@ -20,9 +20,12 @@ struct worst_cell {
   int x, y;
 };
 
-/* Both read the populations that the coming step will collide. Outside of parallel regions. */
+/* All read the populations that the coming step will collide. Outside of parallel regions. */
 struct fluid_totals diagnostics_totals(const struct populations *populations);
 struct worst_cell diagnostics_worst(const struct populations *populations, scan_row *scan);
+
+/* The largest speed of the cells whose speed is finite. */
+double diagnostics_largest_speed(const struct populations *populations);
 
 /* Body force per unit mass and per unit volume that act on the fluid. */
 struct fluid_force {

@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "base/threads.h"
 #include "sim/diagnostics.h"
+#include "sim/divergence.h"
 #include "sim/flow.h"
 #include "sim/footprint.h"
 #include "sim/motion.h"
@@ -27,6 +28,7 @@ struct simulation {
   int threads; /* of the parallel region */
   double initial_momentum[2];
   double max_mach;
+  bool torn; /* a block was left unfinished: rows are at different steps, and no sum over them means anything */
 };
 
 /* Momentum that the coupling conserves: of all fluid, inside discs too, and (m - m_f) V of each disc. */
@@ -230,6 +232,7 @@ static void run_near_block(struct simulation *s, const struct near_rows *near, i
       count_step(s);
     }
   }
+  s->torn = s->team.failed;
 }
 
 /* Steps of a scene with discs that can be blocked in time, as long as enough rows are out of their reach. */
@@ -246,7 +249,6 @@ static void run_near_blocks(struct simulation *s, int64_t steps)
   }
 }
 
-/* Steps up to the next look for divergence. */
 static void run_steps(struct simulation *s, int64_t steps)
 {
   const bool blocked = !s->tuning.settled || s->tuning.best.depth > 1;
@@ -267,13 +269,15 @@ static double congestion(struct simulation *s)
   return inlet ? diagnostics_totals(&s->flow.populations).excess_mass / (double)scene_cells(s->scene) : 0;
 }
 
-/* Where more fluid enters than leaves, its pressure rises until something gives way: then this is the cause. */
-static void say_congestion(struct simulation *s, struct status *status)
+/* Adds the cause of a divergence to its message, and the speeds that the fluid has by now to the largest Mach number. */
+static void explain(struct simulation *s, struct status *status)
 {
-  const double excess = congestion(s);
-  if (excess > 0.1)
-    status_add(status, "; the box holds %.0f %% more fluid than at rest, as more enters than leaves%s", 100 * excess,
-               s->plan.exchange ? ": discs may close an outlet" : "");
+  struct divergence divergence = {.scene = s->scene, .discs = &s->discs, .step = s->step, .excess = NAN};
+  if (!s->torn) {
+    divergence.excess = congestion(s);
+    s->max_mach = fmax(s->max_mach, sqrt(3) * diagnostics_largest_speed(&s->flow.populations));
+  }
+  divergence_explain(&divergence, status);
 }
 
 bool simulation_usable(const struct simulation *s, struct status *status)
@@ -300,7 +304,18 @@ bool simulation_check(struct simulation *s, struct status *status)
     s->max_mach = fmax(s->max_mach, mach);
     return true;
   }
+  explain(s, status);
   team_fail(&s->team, status);
+  return false;
+}
+
+/* Steps up to the next look for divergence. False where one of them failed. */
+static bool advance_to_look(struct simulation *s, int64_t steps, struct status *status)
+{
+  run_steps(s, steps);
+  if (!s->team.failed) return true;
+  if (!s->team.first.out_of_memory) explain(s, &s->team.first);
+  *status = s->team.first;
   return false;
 }
 
@@ -315,12 +330,8 @@ bool simulation_advance(struct simulation *s, int64_t steps, struct status *stat
   const int64_t end = s->step + steps, look = s->scene->run.check;
   while (s->step < end) {
     const int64_t until_look = look - s->step % look;
-    run_steps(s, end - s->step < until_look ? end - s->step : until_look);
-    if (s->team.failed || (s->step % look == 0 && !simulation_check(s, status))) {
-      *status = s->team.first;
-      if (!status->out_of_memory) say_congestion(s, status);
-      return false;
-    }
+    if (!advance_to_look(s, end - s->step < until_look ? end - s->step : until_look, status)) return false;
+    if (s->step % look == 0 && !simulation_check(s, status)) return false;
   }
   return true;
 }
@@ -438,6 +449,7 @@ bool simulation_sample(struct simulation *s, const struct sample_grid *grid, con
 /* Change of the conserved momentum that body forces do not explain; NAN where something else exchanges momentum. */
 static double momentum_drift(struct simulation *s)
 {
+  if (s->torn) return NAN;
   const bool closed_system = scene_is_periodic(s->scene, 0) && scene_is_periodic(s->scene, 1) &&
                              s->discs.free == s->discs.count && s->scene->coupling.solve == SOLVE_IMPLICIT;
   if (!closed_system) return NAN;
@@ -458,11 +470,11 @@ void simulation_report(struct simulation *s, struct simulation_report *report)
   const double cells = (double)s->scene->domain.size[0] * s->scene->domain.size[1];
   const struct fluid_totals totals = diagnostics_totals(&s->flow.populations);
   const struct fluid_force force = flow_force(&s->flow);
-  const double mass = cells + totals.excess_mass, momentum[2] = {totals.jx, totals.jy};
+  const double mass = s->torn ? NAN : cells + totals.excess_mass, momentum[2] = {totals.jx, totals.jy};
   *report = (struct simulation_report){.threads = threads_for(scene_cells(s->scene)),
                                        .kernel = s->flow.kernel->name,
                                        .times = s->times,
-                                       .mass_drift = fabs(totals.excess_mass) / cells,
+                                       .mass_drift = s->torn ? NAN : fabs(totals.excess_mass) / cells,
                                        .momentum_drift = momentum_drift(s),
                                        .max_mach = s->max_mach,
                                        .max_substeps = s->plan.exchange ? s->contacts.most_substeps : 1};

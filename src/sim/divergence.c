@@ -1,0 +1,132 @@
+/* The causes are looked for in the order of their weight as evidence. What the run shows (fluid that cannot leave) comes
+ * before what the case leads one to expect: a start that is too sudden, a speed that is too high, cells that are too coarse,
+ * a viscosity that is too small. */
+#include "sim/divergence.h"
+
+#include "sim/estimate.h"
+
+#include <math.h>
+
+/* Excess of the mean density above which a box is said to hold too much fluid. */
+static const double large_excess = 0.1;
+
+static const char *const sides[] = {"left", "right", "bottom", "top"};
+
+/* Part of a side before which discs lie, no farther from it than a diameter. */
+static double part_closed(const struct divergence *of, enum side_name side)
+{
+  const int axis = side == SIDE_LEFT || side == SIDE_RIGHT ? 0 : 1, *size = of->scene->domain.size;
+  const double at = side == SIDE_RIGHT || side == SIDE_TOP ? size[axis] : 0;
+  double closed = 0;
+  for (size_t i = 0; i < of->discs->count; i++) {
+    const double radius = of->discs->radius[i], centre = axis == 0 ? of->discs->x[i] : of->discs->y[i];
+    if (fabs(centre - at) <= 3 * radius) closed += 2 * radius;
+  }
+  return fmin(1, closed / size[!axis]);
+}
+
+/* The outlet that is closed most. */
+static enum side_name worst_outlet(const struct divergence *of, double *part)
+{
+  enum side_name worst = SIDE_COUNT;
+  *part = 0;
+  for (enum side_name side = 0; side < SIDE_COUNT; side++) {
+    const double own = of->scene->domain.side[side].type == SIDE_OUTLET ? part_closed(of, side) : 0;
+    if (own > *part) *part = own, worst = side;
+  }
+  return worst;
+}
+
+/* Discs that dam the flow: where more fluid enters than leaves, its pressure rises until something gives way. */
+static bool explain_dam(const struct divergence *of, struct status *status)
+{
+  const double least_part = 0.5;
+  double part;
+  const enum side_name outlet = worst_outlet(of, &part);
+  if (!(of->excess > large_excess) || part < least_part) return false;
+  status_add(status,
+             "; the box holds %.0f %% more fluid than at rest, as more enters than leaves: discs may close an outlet "
+             "(they lie before %.0f %% of the %s side)",
+             100 * of->excess, 100 * part, sides[outlet]);
+  return true;
+}
+
+/* The inlet of the fastest fluid; SIDE_COUNT without any. */
+static enum side_name fastest_inlet(const struct scene *scene, double *speed)
+{
+  enum side_name fastest = SIDE_COUNT;
+  *speed = 0;
+  for (enum side_name side = 0; side < SIDE_COUNT; side++) {
+    const double *u = scene->domain.side[side].velocity, own = hypot(u[0], u[1]);
+    if (scene->domain.side[side].type == SIDE_INLET && own > *speed) *speed = own, fastest = side;
+  }
+  return fastest;
+}
+
+/* Fluid at rest is set in motion by a wave of relative density U/c_s, which crosses the box; beside discs potential flow has
+ * up to twice the speed. Reflections last some crossings. */
+static bool explain_start(const struct divergence *of, struct status *status)
+{
+  const double crossings = 4;
+  double speed;
+  const enum side_name inlet = fastest_inlet(of->scene, &speed);
+  if (speed <= scene_advised_speed) return false;
+  const int axis = inlet == SIDE_LEFT || inlet == SIDE_RIGHT ? 0 : 1;
+  if ((double)of->step > crossings * of->scene->domain.size[axis] * sqrt(3)) return false;
+  status_add(
+      status,
+      "; the inlet on the %s sets fluid at rest in motion at once at Mach %.2g: a wave of that strength crosses the "
+      "box%s; better: a lower domain.%s.velocity (<= %g cells/step), or a larger fluid.viscosity",
+      sides[inlet], speed * sqrt(3), of->discs->count > 0 ? ", and beside discs fluid is up to twice as fast" : "",
+      sides[inlet], scene_advised_speed);
+  return true;
+}
+
+/* A force may have done so within the steps so far; the number to change is told for the whole run. */
+static bool explain_speed(const struct divergence *of, const struct estimate *so_far, struct status *status)
+{
+  if (so_far->speed <= scene_advised_speed) return false;
+  const int64_t steps = of->scene->run.steps > of->step ? of->scene->run.steps : of->step;
+  const struct estimate fastest = estimate_fastest(of->scene, steps);
+  status_add(status, "; %s leads to speeds of about %.2g cells/step (Mach %.2g); better: %s <= %.2g %s", fastest.key,
+             fastest.speed, fastest.speed * sqrt(3), fastest.key, fastest.most, fastest.unit);
+  return true;
+}
+
+static bool explain_cells(const struct divergence *of, const struct estimate *fastest, struct status *status)
+{
+  const double grid_reynolds = fastest->speed / of->scene->fluid.viscosity;
+  if (grid_reynolds <= estimate_most_grid_reynolds) return false;
+  status_add(
+      status,
+      "; the grid Reynolds number (of one cell) is %.3g, above %g: the cells are too coarse for the flow; better: "
+      "fluid.viscosity >= %.2g",
+      grid_reynolds, estimate_most_grid_reynolds, fastest->speed / estimate_most_grid_reynolds);
+  return true;
+}
+
+static bool explain_viscosity(const struct divergence *of, struct status *status)
+{
+  const double least = (estimate_least_tau - 0.5) / 3;
+  if (of->scene->fluid.viscosity >= least) return false;
+  status_add(status, "; a viscosity of %g hardly damps errors; better: fluid.viscosity >= %g",
+             of->scene->fluid.viscosity, least);
+  return true;
+}
+
+static bool explain_excess(const struct divergence *of, struct status *status)
+{
+  double speed;
+  if (fastest_inlet(of->scene, &speed) == SIDE_COUNT || !(of->excess > large_excess)) return false;
+  status_add(status, "; the box holds %.0f %% more fluid than at rest, as more enters than leaves", 100 * of->excess);
+  return true;
+}
+
+void divergence_explain(const struct divergence *of, struct status *status)
+{
+  const struct estimate fastest = estimate_fastest(of->scene, of->step);
+  if (explain_dam(of, status)) return;
+  const bool fast = explain_start(of, status) || explain_speed(of, &fastest, status);
+  const bool coarse = explain_cells(of, &fastest, status) || explain_viscosity(of, status);
+  if (!fast && !coarse) explain_excess(of, status);
+}

@@ -1,0 +1,140 @@
+#include "sim/estimate.h"
+
+#include <math.h>
+#include <stdio.h>
+
+/* Force per density and depth on a cylinder of that radius in a stream. */
+static double cylinder_drag(double radius, double viscosity, double speed)
+{
+  const double re = 2 * speed * radius / viscosity;
+  const double cd = re < 1 ? 8 * M_PI / (re * log(7.4 / re)) : 1 + 10 * pow(re, -2.0 / 3);
+  return cd * speed * speed * radius;
+}
+
+double estimate_settling(double radius, double viscosity, double weight)
+{
+  double low = 0, high = 10;
+  for (int k = 0; k < 100; k++) {
+    const double speed = (low + high) / 2;
+    if (cylinder_drag(radius, viscosity, speed) < weight)
+      low = speed;
+    else
+      high = speed;
+  }
+  return low;
+}
+
+/* Force over viscosity and mean speed of a square array of cylinders at Re = 0. */
+static double array_drag(double fraction)
+{
+  const double f = fraction;
+  return 4 * M_PI / (-0.5 * log(f) - 0.738 + f - 0.887 * f * f + 2.038 * f * f * f);
+}
+
+/* Fluid that a force per unit mass drives past the fixed discs of the scene; INFINITY without any. */
+static double past_fixed_discs(const struct scene *scene, double force)
+{
+  const double cells = (double)scene_cells(scene), viscosity = scene->fluid.viscosity;
+  double count = 0, radius = 0, area = 0;
+  for (size_t i = 0; i < scene->particles.count; i++) {
+    const struct disc_spec *disc = &scene->particles.discs[i];
+    if (disc->motion != DISC_FIXED) continue;
+    count++;
+    radius += disc->radius;
+    area += M_PI * disc->radius * disc->radius;
+  }
+  if (count == 0) return INFINITY;
+  const double load = force * cells / count, fraction = fmin(area / cells, 0.7);
+  return fmin(load / (array_drag(fraction) * viscosity), estimate_settling(radius / count, viscosity, load));
+}
+
+double estimate_forced(const struct scene *scene, int axis, int64_t steps)
+{
+  const double force = fabs(scene->fluid.force[axis]), height = scene->domain.size[!axis];
+  if (!scene_is_periodic(scene, axis) || force == 0) return 0;
+  double speed = fmin(force * (double)steps, past_fixed_discs(scene, force));
+  if (scene_is_closed(scene, !axis)) speed = fmin(speed, force * height * height / (8 * scene->fluid.viscosity));
+  return speed;
+}
+
+static void consider(struct estimate *fastest, const struct estimate *other)
+{
+  if (other->speed > fastest->speed) *fastest = *other;
+}
+
+static void consider_sides(struct estimate *fastest, const struct scene *scene)
+{
+  static const char *const sides[] = {"left", "right", "bottom", "top"};
+  for (int k = 0; k < SIDE_COUNT; k++) {
+    const double *u = scene->domain.side[k].velocity;
+    struct estimate own = {
+        .speed = hypot(u[0], u[1]), .from = "the sides", .most = scene_advised_speed, .unit = "cells/step"};
+    snprintf(own.key, sizeof own.key, "domain.%s.velocity", sides[k]);
+    consider(fastest, &own);
+  }
+}
+
+static void consider_disc(struct estimate *fastest, const struct scene *scene, size_t i)
+{
+  const struct disc_spec *disc = &scene->particles.discs[i];
+  const double along = hypot(disc->velocity[0], disc->velocity[1]), rim = fabs(disc->spin) * disc->radius;
+  const double advised = scene_advised_speed;
+  struct estimate own = {.speed = along + rim, .from = "the discs", .most = advised, .unit = "cells/step"};
+  snprintf(own.key, sizeof own.key, "particles.discs.%zu.velocity", i);
+  if (rim > along) {
+    snprintf(own.key, sizeof own.key, "particles.discs.%zu.spin", i);
+    own.most = advised / disc->radius;
+    own.unit = "radians/step";
+  }
+  consider(fastest, &own);
+}
+
+static void consider_weight(struct estimate *fastest, const struct scene *scene, const struct disc_spec *disc)
+{
+  const double *gravity = scene->particles.gravity, viscosity = scene->fluid.viscosity;
+  const double buoyant = M_PI * disc->radius * disc->radius * fabs(disc->density - 1);
+  const double weight = buoyant * hypot(gravity[0], gravity[1]);
+  if (disc->motion != DISC_FREE || weight == 0) return;
+  const struct estimate own = {
+      .speed = estimate_settling(disc->radius, viscosity, weight),
+      .from = "the discs",
+      .key = "particles.gravity",
+      .most = cylinder_drag(disc->radius, viscosity, scene_advised_speed) / buoyant,
+      .unit = "cells/step^2",
+  };
+  consider(fastest, &own);
+}
+
+static void consider_force(struct estimate *fastest, const struct scene *scene, int axis, int64_t steps)
+{
+  struct scene weaker = *scene;
+  struct estimate own = {
+      .speed = estimate_forced(scene, axis, steps), .from = "the force", .key = "fluid.force", .unit = "cells/step^2"};
+  if (own.speed <= fastest->speed) return;
+  double low = 0, high = fabs(scene->fluid.force[axis]);
+  for (int k = 0; k < 60; k++) {
+    weaker.fluid.force[axis] = (low + high) / 2;
+    if (estimate_forced(&weaker, axis, steps) < scene_advised_speed)
+      low = weaker.fluid.force[axis];
+    else
+      high = weaker.fluid.force[axis];
+  }
+  own.most = low;
+  consider(fastest, &own);
+}
+
+struct estimate estimate_fastest(const struct scene *scene, int64_t steps)
+{
+  struct estimate fastest = {.from = ""};
+  const struct disc_spec *before = NULL;
+  consider_sides(&fastest, scene);
+  for (size_t i = 0; i < scene->particles.count; i++) {
+    const struct disc_spec *disc = &scene->particles.discs[i];
+    consider_disc(&fastest, scene, i);
+    if (!before || disc->radius != before->radius || disc->density != before->density || disc->motion != before->motion)
+      consider_weight(&fastest, scene, disc);
+    before = disc;
+  }
+  for (int axis = 0; axis < 2; axis++) consider_force(&fastest, scene, axis, steps);
+  return fastest;
+}

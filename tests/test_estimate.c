@@ -1,0 +1,213 @@
+/* What is foreseen of a scene, against runs of it; and the cause that is found where a run diverges. */
+#include "scenes.h"
+
+#include "sim/estimate.h"
+#include "sim/simulation.h"
+
+#include <criterion/criterion.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+TestSuite(estimate);
+TestSuite(divergence);
+
+static struct simulation *start(struct scene *scene)
+{
+  struct simulation *simulation;
+  struct status status;
+  cr_assert(simulation_create(&simulation, scene, &status), "%s", status.message);
+  return simulation;
+}
+
+/* The largest speed along x, and its mean over the box, after so many steps. */
+static void speeds_of(struct scene *scene, int64_t steps, double *largest, double *mean)
+{
+  struct simulation *simulation = start(scene);
+  struct status status;
+  const size_t cells = (size_t)scene_cells(scene);
+  double *ux = malloc(cells * sizeof *ux);
+  cr_assert(ux && simulation_advance(simulation, steps, &status), "%s", status.message);
+  simulation_fields(simulation, NULL, ux, NULL);
+  *largest = *mean = 0;
+  for (size_t k = 0; k < cells; k++) {
+    *largest = fmax(*largest, fabs(ux[k]));
+    *mean += ux[k] / (double)cells;
+  }
+  free(ux);
+  simulation_destroy(simulation);
+}
+
+static struct scene channel(int height, double viscosity, double force)
+{
+  struct scene scene = scene_box(8, height, viscosity, SIDES_CLOSED);
+  scene.domain.side[SIDE_LEFT].type = scene.domain.side[SIDE_RIGHT].type = SIDE_PERIODIC;
+  scene.fluid.force[0] = force;
+  return scene;
+}
+
+Test(estimate, of_flow_between_walls_is_what_a_run_reaches_late_and_an_upper_bound_before)
+{
+  struct scene scene = channel(24, 0.2, 1e-5);
+  double largest, mean;
+  for (int64_t steps = 50; steps <= 6400; steps *= 2) {
+    speeds_of(&scene, steps, &largest, &mean);
+    const double foreseen = estimate_forced(&scene, 0, steps);
+    cr_expect_leq(largest, 1.01 * foreseen, "%lld steps: %g, foreseen %g", (long long)steps, largest, foreseen);
+    if (steps == 50 || steps == 6400) cr_expect_float_eq(largest, foreseen, 0.02 * foreseen);
+  }
+  cr_expect_float_eq(estimate_forced(&scene, 0, 100000), 1e-5 * 24 * 24 / (8 * 0.2), 1e-15);
+  scene_clear(&scene);
+}
+
+Test(estimate, of_flow_without_walls_is_force_times_time)
+{
+  struct scene scene = scene_box(16, 16, 0.1, SIDES_PERIODIC);
+  double largest, mean;
+  scene.fluid.force[0] = -2e-5;
+  speeds_of(&scene, 1000, &largest, &mean);
+  cr_expect_float_eq(estimate_forced(&scene, 0, 1000), 0.02, 1e-15);
+  cr_expect_float_eq(largest, 0.02, 1e-6);
+  cr_expect_eq(estimate_forced(&scene, 1, 1000), 0);
+  scene_clear(&scene);
+}
+
+/* The series for the array's drag is one in the solid fraction: at 0.4 the exact drag (Sangani & Acrivos 1982, table 1: 217.89
+ * in place of 115.7) allows half of that speed. */
+Test(estimate, of_flow_past_a_square_array_is_its_mean_speed_and_an_upper_bound_where_it_is_dense)
+{
+  static const struct {
+    double fraction, of_foreseen;
+  } arrays[] = {{0.05, 1}, {0.2, 1}, {0.4, 115.7 / 217.89}};
+  for (int k = 0; k < 3; k++) {
+    struct scene scene = scene_square_array(6, arrays[k].fraction, 0.1, 1e-6);
+    double largest, mean;
+    speeds_of(&scene, 8000, &largest, &mean);
+    const double foreseen = estimate_forced(&scene, 0, 1000000), right = arrays[k].of_foreseen * foreseen;
+    cr_expect_float_eq(mean, right, 0.05 * right, "fraction %g: %g, foreseen %g", arrays[k].fraction, mean, foreseen);
+    scene_clear(&scene);
+  }
+}
+
+Test(estimate, is_zero_along_an_axis_that_is_not_periodic)
+{
+  struct scene scene = scene_box(16, 16, 0.1, SIDES_CLOSED);
+  scene.fluid.force[0] = scene.fluid.force[1] = 1e-3;
+  cr_expect_eq(estimate_forced(&scene, 0, 1000), 0);
+  cr_expect_eq(estimate_forced(&scene, 1, 1000), 0);
+  scene_clear(&scene);
+}
+
+/* The speed that the scene leads to once the number is changed as advised. */
+static double speed_as_advised(struct scene *scene, const struct estimate *fastest, double *number)
+{
+  *number = copysign(fastest->most, *number);
+  return estimate_fastest(scene, scene->run.steps).speed;
+}
+
+Test(estimate, names_the_number_and_its_value_for_the_advised_speed)
+{
+  struct scene scene = channel(24, 0.02, 1e-3);
+  scene.run.steps = 100000;
+  struct estimate fastest = estimate_fastest(&scene, scene.run.steps);
+  cr_expect_str_eq(fastest.key, "fluid.force");
+  cr_expect_float_eq(speed_as_advised(&scene, &fastest, &scene.fluid.force[0]), scene_advised_speed, 1e-9);
+  scene.fluid.force[0] = 0;
+  scene_add_disc(&scene, 4, 3, 4, 12);
+  scene.particles.gravity[1] = -0.05;
+  fastest = estimate_fastest(&scene, scene.run.steps);
+  cr_expect_str_eq(fastest.key, "particles.gravity");
+  cr_expect_float_eq(speed_as_advised(&scene, &fastest, &scene.particles.gravity[1]), scene_advised_speed, 1e-9);
+  scene.particles.gravity[1] = 0;
+  scene.particles.discs[0].spin = -0.06;
+  fastest = estimate_fastest(&scene, scene.run.steps);
+  cr_expect_str_eq(fastest.key, "particles.discs.0.spin");
+  cr_expect_float_eq(speed_as_advised(&scene, &fastest, &scene.particles.discs[0].spin), scene_advised_speed, 1e-9);
+  scene.domain.side[SIDE_TOP].velocity[0] = 0.25;
+  fastest = estimate_fastest(&scene, scene.run.steps);
+  cr_expect_str_eq(fastest.key, "domain.top.velocity");
+  cr_expect_float_eq(speed_as_advised(&scene, &fastest, &scene.domain.side[SIDE_TOP].velocity[0]), scene_advised_speed,
+                     1e-9);
+  scene_clear(&scene);
+}
+
+/* A channel with an inlet on the left, an outlet on the right, and a fixed disc. */
+static struct scene stream(double speed, double viscosity, double at)
+{
+  struct scene scene = scene_box(120, 60, viscosity, SIDES_CLOSED);
+  scene.domain.side[SIDE_LEFT] = (struct side){SIDE_INLET, {speed, 0}};
+  scene.domain.side[SIDE_RIGHT].type = SIDE_OUTLET;
+  scene_add_disc(&scene, 8, 1, at, 30)->motion = DISC_FIXED;
+  return scene;
+}
+
+/* The message of the run, which diverges within so many steps. */
+static void diverge(struct scene *scene, int64_t steps, struct status *status, struct simulation_report *report)
+{
+  struct simulation *simulation = start(scene);
+  scene->run.steps = steps;
+  cr_assert_not(simulation_advance(simulation, steps, status));
+  simulation_report(simulation, report);
+  simulation_destroy(simulation);
+  scene_clear(scene);
+}
+
+static void expect_words(const char *message, const char *words, bool there)
+{
+  cr_expect_eq(strstr(message, words) != NULL, there, "'%s' %s: %s", words, there ? "expected" : "unexpected", message);
+}
+
+Test(divergence, of_an_inlet_switched_on_at_high_speed_names_the_start_and_no_outlet)
+{
+  struct scene scene = stream(0.28, 0.005, 40);
+  struct simulation_report report;
+  struct status status;
+  diverge(&scene, 700, &status, &report);
+  expect_words(status.message, "the inlet on the left sets fluid at rest in motion at once at Mach 0.48", true);
+  expect_words(status.message, "a lower domain.left.velocity (<= 0.1 cells/step), or a larger fluid.viscosity", true);
+  expect_words(status.message, "outlet", false);
+  expect_words(status.message, "more enters than leaves", false);
+}
+
+Test(divergence, of_fluid_that_a_force_drives_too_fast_names_the_force)
+{
+  struct scene scene = channel(24, 0.02, 1e-3);
+  struct simulation_report report;
+  struct status status;
+  diverge(&scene, 5000, &status, &report);
+  expect_words(status.message,
+               "fluid.force leads to speeds of about 3.6 cells/step (Mach 6.2); better: fluid.force <= "
+               "2.8e-05 cells/step^2",
+               true);
+  expect_words(status.message, "inlet", false);
+}
+
+Test(divergence, of_cells_too_coarse_for_the_flow_names_the_grid_reynolds_number)
+{
+  struct scene scene = scene_box(64, 64, 0.0004, SIDES_CLOSED);
+  struct simulation_report report;
+  struct status status;
+  scene.fluid.collision = COLLISION_BGK;
+  scene.fluid.rates.e = scene.fluid.rates.q = scene.fluid.rates.nu;
+  scene.fluid.rates.q_fast = 0;
+  scene.domain.side[SIDE_TOP].velocity[0] = 0.1;
+  diverge(&scene, 20000, &status, &report);
+  expect_words(status.message, "the grid Reynolds number (of one cell) is 250, above 10", true);
+  expect_words(status.message, "better: fluid.viscosity >= 0.01", true);
+  expect_words(status.message, "leads to speeds", false);
+}
+
+/* Whether a run is told to have diverged by its speed or by a cell that is not finite. */
+Test(divergence, leaves_the_largest_mach_number_that_the_fluid_had_in_the_report)
+{
+  struct scene scene = channel(24, 0.02, 1e-3);
+  struct simulation_report report;
+  struct status status;
+  scene.run.check = 100;
+  diverge(&scene, 5000, &status, &report);
+  double told = 0;
+  const char *at = strstr(status.message, "at Mach ");
+  cr_assert(at && sscanf(at, "at Mach %lf", &told) == 1, "%s", status.message);
+  cr_expect_gt(report.max_mach, 0.6);
+  cr_expect_float_eq(report.max_mach, told, 0.005 * told);
+}
