@@ -109,7 +109,56 @@ Test(program, a_diverging_run_stops_says_so_and_keeps_what_it_wrote)
   cr_expect(contains("out", "status=diverged"));
   cr_expect(contains("err", "diverged at step"));
   cr_expect(contains("o/run.json", "\"status\": \"diverged\""));
+  cr_expect_eq(shell("grep -q '\"reason\": \"diverged at step .* disc 0 ' o/run.json"), 0);
   cr_expect_eq(shell("test $(wc -l <o/particles.csv) -gt 3 && ! grep -qiE 'nan|inf' o/particles.csv o/run.json"), 0);
+}
+
+Test(program, a_run_faster_than_advised_ends_with_a_warning_that_run_json_has_too)
+{
+  shell_write("lid.yaml", "domain: {size: [32, 32], top: {type: wall, velocity: [0.09, 0]}}\nfluid: {viscosity: 0.1}\n"
+                          "run: {steps: 400}\n");
+  cr_expect_eq(
+      shell("$DELBM run lid.yaml --quiet --out o >out 2>err && ! grep warning err && ! grep warning o/run.json && "
+            "grep -q '\"reason\": \"all of run.steps are done\"' o/run.json && "
+            "! $DELBM info lid.yaml | grep Mach.above"),
+      0);
+  cr_expect_eq(
+      shell("$DELBM run lid.yaml --quiet --out o --set domain.top.velocity=[0.13,0] >out 2>err && "
+            "grep -q '^delbm: warning: fluid moved at up to Mach 0.2[0-2], above 0.17 (0.1 cells/step)' err && "
+            "grep -q '\"warning\": \"fluid moved at up to Mach 0.2' o/run.json && "
+            "$DELBM info lid.yaml --set domain.top.velocity=[0.13,0] | "
+            "grep -q 'Mach above 0.17 .*better: domain.top.velocity <= 0.1 cells/step'"),
+      0);
+}
+
+Test(program, info_foresees_the_speed_that_a_force_drives_fluid_to)
+{
+  shell_write("channel.yaml", "units: {dx: 0.1 mm, viscosity: 0.1, density: 1000 kg/m^3}\n"
+                              "domain: {size: [40 mm, 12 mm], left: periodic, right: periodic}\n"
+                              "fluid: {viscosity: 1e-6 m^2/s, force: [0.5 m/s^2, 0]}\n"
+                              "run: {steps: 5 s}\n");
+  cr_expect_eq(shell("$DELBM info channel.yaml >i && grep -q '^force .*drives the fluid to about 25 cells a step' i && "
+                     "grep -qF 'better: fluid.force <= 2e-05 cells/step^2 (0.002 m/s^2), or units.dt <= 4e-06 s' i"),
+               0);
+  cr_expect_eq(shell("$DELBM info channel.yaml --set 'fluid.force=[0.00199 m/s^2, 0]' >i && ! grep 'Mach above' i"), 0);
+  cr_expect_eq(shell("$DELBM run channel.yaml --quiet --out o 2>err >out; test $? = 1 && "
+                     "grep -q 'fluid.force leads to speeds of about 25 cells/step (Mach 43); better: fluid.force <= "
+                     "2e-05 cells/step^2' err && grep -q '\"max_mach\": 0.8' o/run.json"),
+               0);
+}
+
+/* A README line that its own program warns of misleads. */
+Test(program, the_cases_of_the_readme_get_no_note_and_stay_below_the_advised_speed)
+{
+  cr_assert_eq(shell("awk '/^```yaml/ {n++; on = 1; next} /^```/ {on = 0} on {print > (\"readme\" n \".yaml\")}' "
+                     "%s/../README.md && test -s readme1.yaml -a -s readme2.yaml",
+                     TEST_DIR),
+               0);
+  for (int k = 1; k <= 2; k++)
+    cr_expect_eq(shell("$DELBM info readme%d.yaml >i && ! grep note: i >&2", k), 0, "case %d", k);
+  cr_expect_eq(shell("$DELBM run readme2.yaml --quiet --out o --set output={} --set run.steps=1500 >out 2>err && "
+                     "! grep . err >&2 && awk '/max_mach/ {exit !($2 + 0 > 0.08)}' o/run.json"),
+               0);
 }
 
 Test(program, exit_codes_tell_what_went_wrong)
@@ -216,6 +265,7 @@ Test(program, an_interrupted_run_ends_in_order)
                      DELBM),
                0);
   cr_expect(contains("o/run.json", "\"status\": \"interrupted\""));
+  cr_expect(contains("o/run.json", "\"reason\": \"interrupted by SIGINT\""));
 }
 
 Test(program, shows_a_title_without_its_control_characters)

@@ -209,10 +209,11 @@ Test(case_in_si, info_says_what_a_cell_and_a_step_are_and_what_to_change)
   cr_expect_eq(shell("$DELBM info si.yaml --set 'units={dx: 0.1 mm, dt: 5 us}' --set particles.density=1.2 "
                      "--set contact.stiffness=0.25 --set particles.discs.1.spin=0 --set run.steps=9 "
                      "--set output.every=1 >i && "
-                     "grep 'tau below 0.503' i | grep -q 'units.dt >= 1e-05 s or units.dx <= 7.07e-05 m'"),
+                     "grep 'tau below 0.503' i | grep -q 'units.dt >= 1e-05 s (units.viscosity >= 0.001) or units.dx "
+                     "<= 7.07e-05 m'"),
                0);
   cr_expect_eq(shell("$DELBM info si.yaml --set 'particles.gravity=[0, -9.81 m/s^2]' --set particles.density=5 >i && "
-                     "grep 'Mach above 0.3' i | grep -q 'speeds <= 0.173, by units.dt <= '"),
+                     "grep 'Mach above 0.17' i | grep -q 'particles.gravity <= .* m/s^2), or units.dt <= '"),
                0);
   cr_expect_eq(shell("$DELBM info si.yaml --set 'units.viscosity=0.004' --set 'particles.gravity=[0, -0.0024525]' "
                      "--set output.every=1 --set run.steps=9 >i && "

@@ -8,15 +8,13 @@
 #include "fluid/sweep.h"
 #include "scene/scene_tree.h"
 #include "sim/blocked.h"
+#include "sim/estimate.h"
 #include "sim/footprint.h"
 
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-
-/* Where a note is due: rules of thumb. */
-static const double least_tau = 0.503, most_mach = 0.3, most_grid_reynolds = 10;
 
 enum { OPTION_SET = OPTION_OWN };
 
@@ -76,8 +74,8 @@ static void advise_viscosity(const struct scene *scene, double wanted)
   const double factor = wanted / scene->fluid.viscosity;
   printf("fluid.viscosity %s %.3g", to, wanted);
   if (scene->units.dx > 0)
-    printf(", by units.dt %s %.3g s or units.dx %s %.3g m", to, scene->units.dt * factor,
-           more ? "<=" : ">=", scene->units.dx / sqrt(factor));
+    printf(", by units.dt %s %.3g s (units.viscosity %s %.3g) or units.dx %s %.3g m", to, scene->units.dt * factor, to,
+           wanted, more ? "<=" : ">=", scene->units.dx / sqrt(factor));
   printf("\n");
 }
 
@@ -99,73 +97,83 @@ static void print_fluid(const struct scene *scene)
     printf("  note: tau above 1.5; walls and discs lose accuracy; better: ");
     advise_viscosity(scene, (1.5 - 0.5) / 3);
   }
-  if (tau < least_tau) {
+  if (tau < estimate_least_tau) {
     printf("  note: tau below %g, close to 1/2: hardly any damping of what goes wrong, and no collision operator is "
            "reliable above Mach 0.2 (bench/README.md, stability); better: ",
-           least_tau);
-    advise_viscosity(scene, (least_tau - 0.5) / 3);
+           estimate_least_tau);
+    advise_viscosity(scene, (estimate_least_tau - 0.5) / 3);
   }
 }
 
-/* Speed at which a disc settles alone in unbounded fluid, from its weight and the drag of a cylinder: C_D = 8 pi/(Re
- * ln(7.4/Re)) (Lamb) at small Re, and the fit 1 + 10 Re^(-2/3) of measured drag beyond Re = 1. Within a factor of two;
- * for orientation. */
-static double settling_speed(double radius, double viscosity, double weight)
+/* What to change where the speed is above the advised one. */
+static void advise_speed(const struct scene *scene, const struct estimate *fastest)
 {
-  double low = 0, high = 10;
-  for (int k = 0; k < 100; k++) {
-    const double u = (low + high) / 2, re = 2 * u * radius / viscosity;
-    const double cd = re < 1 ? 8 * M_PI / (re * log(7.4 / re)) : 1 + 10 * pow(re, -2.0 / 3);
-    if (cd * u * u * radius < weight)
-      low = u;
-    else
-      high = u;
+  const double advised = scene_advised_speed;
+  if (fastest->speed <= advised) return;
+  printf("  note: Mach above %.2g (%g cells/step); errors grow with its square; better: %s <= %.3g %s",
+         advised * sqrt(3), advised, fastest->key, fastest->most, fastest->unit);
+  if (scene->units.dx > 0) {
+    const double slower = advised / fastest->speed;
+    struct unit unit;
+    char si[UNIT_TEXT];
+    unit_parse(fastest->unit, &scene->units, &unit);
+    unit_si_text(&unit, si);
+    printf(" (%.3g %s), or units.dt <= %.3g s (units.viscosity <= %.3g)", in_si(scene, fastest->most, fastest->unit),
+           si, scene->units.dt * slower, scene->fluid.viscosity * slower);
   }
-  return low;
+  printf("\n");
+}
+
+static void advise_cells(const struct scene *scene, double speed)
+{
+  const double grid_reynolds = speed / scene->fluid.viscosity;
+  if (grid_reynolds <= estimate_most_grid_reynolds) return;
+  printf("  note: grid Reynolds number (of one cell) %.3g, above %g: cells too coarse for the flow, which may become "
+         "unstable; better: fluid.viscosity >= %.3g",
+         grid_reynolds, estimate_most_grid_reynolds, speed / estimate_most_grid_reynolds);
+  if (scene->units.dx > 0)
+    printf(", by units.dx <= %.3g m", scene->units.dx * estimate_most_grid_reynolds / grid_reynolds);
+  printf("\n");
+}
+
+/* The length of the Reynolds number: the largest disc or, without any, the width of what flows. */
+static double reynolds_length(const struct scene *scene)
+{
+  const int *size = scene->domain.size;
+  double length = 0;
+  for (size_t i = 0; i < scene->particles.count; i++) length = fmax(length, 2 * scene->particles.discs[i].radius);
+  if (length > 0) return length;
+  for (int axis = 0; axis < 2; axis++)
+    if (scene_is_closed(scene, axis) && !scene_is_closed(scene, !axis)) return size[axis];
+  return fmin(size[0], size[1]);
+}
+
+static void print_force(const struct scene *scene)
+{
+  const double *force = scene->fluid.force;
+  double along[2];
+  for (int axis = 0; axis < 2; axis++) along[axis] = estimate_forced(scene, axis, scene->run.steps);
+  if (force[0] == 0 && force[1] == 0) return;
+  printf("force        (%g, %g) per unit mass", force[0], force[1]);
+  if (hypot(along[0], along[1]) > 0)
+    printf(": drives the fluid to about %.3g cells a step by the end of the run\n", hypot(along[0], along[1]));
+  else
+    printf(": along no periodic axis, so what it does depends on the sides\n");
 }
 
 static void print_speeds(const struct scene *scene)
 {
-  double speed = 0, length = 0;
-  const char *from = NULL;
-  const double gravity = hypot(scene->particles.gravity[0], scene->particles.gravity[1]);
-  for (int k = 0; k < SIDE_COUNT; k++) {
-    const double u = hypot(scene->domain.side[k].velocity[0], scene->domain.side[k].velocity[1]);
-    if (u > speed) speed = u, from = "the sides";
-  }
-  for (size_t i = 0; i < scene->particles.count; i++) {
-    const struct disc_spec *disc = &scene->particles.discs[i];
-    const double weight = M_PI * disc->radius * disc->radius * fabs(disc->density - 1) * gravity;
-    double u = hypot(disc->velocity[0], disc->velocity[1]) + fabs(disc->spin) * disc->radius;
-    if (disc->motion == DISC_FREE && weight > 0)
-      u = fmax(u, settling_speed(disc->radius, scene->fluid.viscosity, weight));
-    if (u > speed) speed = u, from = "the discs";
-    length = fmax(length, 2 * disc->radius);
-  }
-  const double force = hypot(scene->fluid.force[0], scene->fluid.force[1]);
-  if (force > 0)
-    printf("force        %g per unit mass: a free acceleration; speeds follow from what resists it\n", force);
-  if (!from) {
+  const struct estimate fastest = estimate_fastest(scene, scene->run.steps);
+  const double length = reynolds_length(scene);
+  print_force(scene);
+  if (fastest.speed == 0) {
     printf("speed        none is given by the case: no Reynolds number\n");
     return;
   }
-  if (length == 0) length = fmin(scene->domain.size[0], scene->domain.size[1]);
-  printf("speed        about %.3g cells a step (%s): Mach %.3g, Reynolds number %.3g over %g cells\n", speed, from,
-         speed * sqrt(3), speed * length / scene->fluid.viscosity, length);
-  if (speed * sqrt(3) > most_mach) {
-    printf("  note: Mach above %g; errors grow with its square; better: speeds <= %.3g", most_mach,
-           most_mach / sqrt(3));
-    if (scene->units.dx > 0) printf(", by units.dt <= %.3g s", scene->units.dt * most_mach / (speed * sqrt(3)));
-    printf("\n");
-  }
-  const double grid_reynolds = speed / scene->fluid.viscosity;
-  if (grid_reynolds > most_grid_reynolds) {
-    printf("  note: grid Reynolds number (of one cell) %.3g, above %g: cells too coarse for the flow, which may become "
-           "unstable; better: fluid.viscosity >= %.3g",
-           grid_reynolds, most_grid_reynolds, speed / most_grid_reynolds);
-    if (scene->units.dx > 0) printf(", by units.dx <= %.3g m", scene->units.dx * most_grid_reynolds / grid_reynolds);
-    printf("\n");
-  }
+  printf("speed        about %.3g cells a step (%s): Mach %.3g, Reynolds number %.3g over %g cells\n", fastest.speed,
+         fastest.from, fastest.speed * sqrt(3), fastest.speed * length / scene->fluid.viscosity, length);
+  advise_speed(scene, &fastest);
+  advise_cells(scene, fastest.speed);
 }
 
 static void print_discs(const struct scene *scene)

@@ -29,7 +29,7 @@ static void print_help(void)
        "Its files become the same, byte for byte, as those of a run that was never stopped (run.json but for times).\n"
        "\n"
        "  --steps N        total length of the run, in place of run.steps in DIR/case.yaml: extends a run\n"
-       "  --quiet          no progress on stderr, only errors\n"
+       "  --quiet          no progress on stderr, only warnings and errors\n"
        "  --help           this text\n"
        "\n"
        "A run checkpoints when it is interrupted (Ctrl-C, SIGTERM, SIGHUP) and every output.checkpoint.every\n"

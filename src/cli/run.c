@@ -37,7 +37,7 @@ static void print_help(void)
        "  --plan DEPTH     steps in one pass through memory (run.plan.depth); 1 is unblocked, auto the fastest by "
        "trial;\n"
        "                   it changes nothing but the speed\n"
-       "  --quiet          no progress on stderr, only errors\n"
+       "  --quiet          no progress on stderr, only warnings and errors\n"
        "  --help           this text\n"
        "  --help-keys      every key of a case, what it means and what it may be\n"
        "\n"

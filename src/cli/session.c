@@ -4,6 +4,7 @@
 #include "output/progress.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <signal.h>
 
 /* The signal that asked the run to end, read between chunks of steps. A signal handler has no other way to speak. */
@@ -111,6 +112,28 @@ static void note_failure(struct run *run, const struct status *status)
   run->status = *status;
 }
 
+/* Why the run ended, in words. */
+static const char *reason_of(const struct run *run)
+{
+  if (run->outcome == OUTCOME_DONE) return "all of run.steps are done";
+  if (run->outcome != OUTCOME_INTERRUPTED) return run->status.message;
+  return run->status.code == DELBM_TERMINATED ? "interrupted by SIGTERM" : "interrupted by SIGINT";
+}
+
+enum { WARNING = 256 };
+
+/* What a person must know who uses the results: "" if nothing. */
+static void warn(const struct simulation_report *report, char warning[WARNING])
+{
+  const double advised = sqrt(3) * scene_advised_speed;
+  *warning = '\0';
+  if (report->max_mach > advised)
+    snprintf(
+        warning, WARNING,
+        "fluid moved at up to Mach %.2g, above %.2g (%g cells/step): errors of compressibility grow with its square",
+        report->max_mach, advised, scene_advised_speed);
+}
+
 /* Closes the files and tells how the run ended: in run.json, on stdout and on stderr. */
 static void conclude(struct run *run)
 {
@@ -123,9 +146,14 @@ static void conclude(struct run *run)
   summary.report.times.seconds[STAGE_OUTPUT] = recorder_seconds(run->recorder);
   summary.outcome = run->outcome;
   summary.message = run->outcome == OUTCOME_DONE ? NULL : run->status.message;
+  summary.reason = reason_of(run);
+  char warning[WARNING];
+  warn(&summary.report, warning);
+  summary.warning = *warning ? warning : NULL;
   if (!recorder_summarise(run->recorder, &summary, &status)) note_failure(run, &status);
   summary.outcome = run->outcome;
   summary_print(&summary, stdout);
+  if (*warning && run->outcome != OUTCOME_DIVERGED) fprintf(stderr, "delbm: warning: %s\n", warning);
   if (run->outcome != OUTCOME_DONE) report_error(&run->status);
 }
 

@@ -90,6 +90,8 @@ static struct figures figures_of(const struct summary *summary)
   struct figures figures = {0};
   add_text(&figures, "status", outcome_name(summary->outcome));
   add_text(&figures, "message", summary->message)->json_only = true;
+  add_text(&figures, "reason", summary->reason)->json_only = true;
+  add_text(&figures, "warning", summary->warning)->json_only = true;
   add_integer(&figures, "steps", summary->steps);
   add_real(&figures, "seconds", summary->seconds);
   add_real(&figures, "mlups", mlups(summary));

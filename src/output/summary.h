@@ -11,6 +11,8 @@ enum outcome { OUTCOME_DONE, OUTCOME_DIVERGED, OUTCOME_INTERRUPTED, OUTCOME_FAIL
 struct summary {
   enum outcome outcome;
   const char *message; /* why the run is not done; NULL when it is */
+  const char *reason;  /* why it ended, whatever the outcome */
+  const char *warning; /* on what its results suffer from; NULL: nothing known */
   const struct scene *scene;
   int64_t steps;
   double seconds;                  /* wall time of the steps and of what was written */
