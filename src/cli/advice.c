@@ -156,4 +156,6 @@ void print_advice(const struct scene *scene)
   advise_weight(scene, weight);
   advise_fall(scene, weight);
   advise_substeps(scene);
+  advise_sound(scene);
+  advise_rest(scene);
 }

@@ -1,0 +1,153 @@
+/* What comes of discs that gravity brings to rest at a side of the box within the run: a pile, whose fluid goes on carrying a
+ * part of the weight, and overlap under load. */
+#include "cli/advice.h"
+
+#include "contact/law.h"
+#include "contact/lens.h"
+#include "sim/estimate.h"
+
+#include <math.h>
+#include <stdio.h>
+
+/* Solid fraction of discs poured at random, and the exponent of hindered settling, u = u_alone (1 - fraction)^n (Richardson &
+ * Zaki 1954; 4.8 measured in the case `settling`). */
+static const double packing = 0.8, hindrance = 4.65;
+
+/* Overlap under load above which to warn, as a part of the radius: in a pile, and of discs that lie alone. */
+static const double most_in_pile = 0.02, most_alone = 0.05, wanted_overlap = 0.01;
+
+/* The discs that gravity draws to one side. */
+struct sediment {
+  int axis;
+  bool at_high_end; /* of the axis */
+  size_t count;
+  double weight, area, radius; /* sums */
+  double farthest;             /* of the centres from that side */
+  double low[2], high[2];      /* corners of the rectangle that holds them at the start */
+};
+
+static double weight_of(const struct scene *scene, const struct disc_spec *disc, int axis)
+{
+  return M_PI * disc->radius * disc->radius * (disc->density - 1) * scene->particles.gravity[axis];
+}
+
+static bool is_drawn(const struct scene *scene, const struct sediment *s, const struct disc_spec *disc)
+{
+  const double weight = weight_of(scene, disc, s->axis);
+  return disc->motion == DISC_FREE && weight != 0 && (weight > 0) == s->at_high_end;
+}
+
+static struct sediment gather(const struct scene *scene, int axis, bool at_high_end)
+{
+  struct sediment s = {
+      .axis = axis, .at_high_end = at_high_end, .low = {INFINITY, INFINITY}, .high = {-INFINITY, -INFINITY}};
+  for (size_t i = 0; i < scene->particles.count; i++) {
+    const struct disc_spec *disc = &scene->particles.discs[i];
+    if (!is_drawn(scene, &s, disc)) continue;
+    const double at = disc->position[axis];
+    s.count++;
+    s.weight += fabs(weight_of(scene, disc, axis));
+    s.area += M_PI * disc->radius * disc->radius;
+    s.radius += disc->radius;
+    s.farthest = fmax(s.farthest, at_high_end ? scene->domain.size[axis] - at : at);
+    for (int k = 0; k < 2; k++) {
+      s.low[k] = fmin(s.low[k], disc->position[k] - disc->radius);
+      s.high[k] = fmax(s.high[k], disc->position[k] + disc->radius);
+    }
+  }
+  return s;
+}
+
+/* Width over which the weight is spread: of the box or, for discs that stand densely from the start, their own. */
+static double width_of(const struct scene *scene, const struct sediment *s)
+{
+  const double dense = 0.6, held = (s->high[0] - s->low[0]) * (s->high[1] - s->low[1]);
+  const double box = scene->domain.size[!s->axis];
+  return s->area > dense * held ? fmin(box, s->high[!s->axis] - s->low[!s->axis]) : box;
+}
+
+static double layers(const struct scene *scene, const struct sediment *s)
+{
+  return s->area / packing / scene->domain.size[!s->axis] / (2 * s->radius / (double)s->count);
+}
+
+/* True if the farthest disc arrives within the run, with time for half as far to spare. */
+static bool comes_to_rest(const struct scene *scene, const struct sediment *s)
+{
+  const double spare = 1.5, count = (double)s->count, fraction = s->area / (double)scene_cells(scene);
+  const double alone = estimate_settling(s->radius / count, scene->fluid.viscosity, s->weight / count);
+  const double speed = alone * pow(1 - fmin(fraction, 1), hindrance);
+  const double way = s->farthest - fmax(s->area / packing / scene->domain.size[!s->axis], s->radius / count);
+  return spare * way <= speed * (double)scene->run.steps;
+}
+
+/* Overlap at which the area law carries the load: of two equal discs or, for one that lies alone, of a disc and a side. */
+static struct lens lens_at(double radius, double overlap, bool alone)
+{
+  return alone ? lens_of_wall(radius, radius - overlap) : lens_of_discs(radius, radius, 2 * radius - overlap);
+}
+
+static double overlap_under(double load, double stiffness, double radius, bool alone)
+{
+  double low = 0, high = radius;
+  for (int k = 0; k < 50; k++) {
+    const double overlap = (low + high) / 2;
+    if (stiffness * lens_at(radius, overlap, alone).area < load)
+      low = overlap;
+    else
+      high = overlap;
+  }
+  return low;
+}
+
+/* In a pile a disc bears what lies on its width. */
+static double load_on(const struct scene *scene, const struct sediment *s, const struct disc_spec *disc, bool alone)
+{
+  const double own = fabs(weight_of(scene, disc, s->axis));
+  return alone ? own : fmax(own, s->weight / width_of(scene, s) * 2 * disc->radius);
+}
+
+static void advise_overlap(const struct scene *scene, const struct sediment *s)
+{
+  const struct contact_law law = contact_law_of(scene);
+  const bool alone = layers(scene, s) <= 1;
+  double worst = 0, stiffness = 0;
+  const struct disc_spec *before = NULL;
+  for (size_t i = 0; i < scene->particles.count; i++) {
+    const struct disc_spec *disc = &scene->particles.discs[i];
+    if (!is_drawn(scene, s, disc)) continue;
+    if (before && before->radius == disc->radius && before->density == disc->density) continue;
+    const double load = load_on(scene, s, disc, alone), radius = disc->radius;
+    worst = fmax(worst, overlap_under(load, law.stiffness, radius, alone) / radius);
+    stiffness = fmax(stiffness, load / (scene->contact.alpha * lens_at(radius, wanted_overlap * radius, alone).area));
+    before = disc;
+  }
+  if (worst <= (alone ? most_alone : most_in_pile)) return;
+  printf(
+      "  note: at rest %s overlap by about %.2g %% of their radius under %s; better: contact.stiffness >= %.2g, which "
+      "gives %g %%\n",
+      alone ? "discs and the side that they lie on" : "the lowest discs", 100 * worst,
+      alone ? "their weight" : "the weight of the pile", stiffness, 100 * wanted_overlap);
+}
+
+static void advise_pile(const struct scene *scene, const struct sediment *s)
+{
+  if (layers(scene, s) <= 1) return;
+  printf("  note: %zu discs come to lie in a pile, about %.2g layers high; in two dimensions fluid has no way between "
+         "discs "
+         "that touch, and goes on carrying part of their weight (about half in a pile of 20): contact forces in it are "
+         "too "
+         "small; better: loads from (density - 1) particles.gravity\n",
+         s->count, layers(scene, s));
+}
+
+void advise_rest(const struct scene *scene)
+{
+  for (int axis = 0; axis < 2; axis++)
+    for (int end = 0; end < 2; end++) {
+      const struct sediment s = gather(scene, axis, end == 1);
+      if (s.count == 0 || scene_is_periodic(scene, axis) || !comes_to_rest(scene, &s)) continue;
+      advise_pile(scene, &s);
+      advise_overlap(scene, &s);
+    }
+}
