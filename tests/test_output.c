@@ -135,6 +135,61 @@ Test(csv, numbers_read_back_as_they_were)
   cr_assert_str_eq(row, "\n");
 }
 
+/* With a cell of 2 m, a step of 0.5 s and a fluid of 3 kg/m^3 no two scales are equal but of what has one unit. */
+Test(csv, every_column_has_one_in_si_with_its_unit_and_scale)
+{
+  static const struct {
+    const char *name;
+    int column; /* of the lattice value, from 0 for x; -1: time */
+    double scale;
+  } si[] = {{"t[s]", -1, 0.5},
+            {"x[m]", 0, 2},
+            {"y[m]", 1, 2},
+            {"vx[m/s]", 2, 4},
+            {"vy[m/s]", 3, 4},
+            {"omega[1/s]", 4, 2},
+            {"fx[kg/s^2]", 6, 96},
+            {"fy[kg/s^2]", 7, 96},
+            {"torque[kg*m/s^2]", 8, 192},
+            {"contact_fx[kg/s^2]", 9, 96},
+            {"contact_fy[kg/s^2]", 10, 96},
+            {"contact_torque[kg*m/s^2]", 11, 192}};
+  enum { COUNT = sizeof si / sizeof si[0] };
+  const struct units units = {2, 0.5, 3};
+  struct some_discs some;
+  struct discs *discs = some_discs(&some);
+  for (int k = 0; k < 12; k++) some.columns[k][0] = 10 + k;
+  struct csv *csv;
+  size_t length;
+  char *path = in_scratch("particles.csv");
+  cr_assert(csv_open(&csv, path, &units, &status));
+  cr_assert(csv_write(csv, 7, discs, &status));
+  csv_close(&csv, &status);
+  char *header = strstr(contents(path, &length), "contact_torque,") + strlen("contact_torque");
+  char *row = strchr(header, '\n') + 1;
+  for (int k = 0; k < 14; k++) row = strchr(row, ',') + 1;
+  row--; /* at the comma before the first in SI */
+  for (int k = 0; k < COUNT; k++) {
+    cr_assert_eq(strncmp(header + 1, si[k].name, strlen(si[k].name)), 0, "%s: %.40s", si[k].name, header);
+    header += 1 + strlen(si[k].name);
+    const double value = si[k].column < 0 ? 7 : 10 + si[k].column;
+    cr_assert_eq(*row, ',');
+    cr_expect_eq(strtod(row + 1, &row), value * si[k].scale, "%s", si[k].name);
+  }
+  cr_expect(*header == '\n' && *row == '\n');
+}
+
+Test(csv, without_a_density_of_the_fluid_has_no_forces_in_si)
+{
+  struct csv *csv;
+  size_t length;
+  char *path = in_scratch("particles.csv");
+  cr_assert(csv_open(&csv, path, &(struct units){2, 0.5, 0}, &status));
+  csv_close(&csv, &status);
+  cr_expect_str_eq(strstr(contents(path, &length), "contact_torque,"),
+                   "contact_torque,t[s],x[m],y[m],vx[m/s],vy[m/s],omega[1/s]\n");
+}
+
 Test(csv, what_was_written_is_in_the_file_before_it_is_closed)
 {
   struct some_discs some;
@@ -265,6 +320,19 @@ Test(summary, only_a_run_that_is_not_done_has_a_message)
   summary.outcome = OUTCOME_DIVERGED;
   summary.message = "density is nan";
   assert_holds(run_json(&summary), "\"status\": \"diverged\",\n  \"message\": \"density is nan\",\n");
+}
+
+Test(summary, run_json_holds_the_reason_for_every_end_and_a_warning_where_there_is_one)
+{
+  struct scene scene = some_scene();
+  struct summary summary = some_summary(&scene);
+  summary.reason = "all of run.steps are done";
+  char *json = run_json(&summary);
+  assert_holds(json, "\"status\": \"done\",\n  \"reason\": \"all of run.steps are done\",\n  \"steps\"");
+  cr_assert_null(strstr(json, "warning"));
+  summary.warning = "too fast";
+  assert_holds(run_json(&summary), "\"reason\": \"all of run.steps are done\",\n  \"warning\": \"too fast\",\n");
+  cr_assert_null(strstr(line_of(&summary), "too fast"));
 }
 
 Test(summary, text_is_escaped_for_json)

@@ -2,6 +2,7 @@
 #include "scene/scene_errors.h"
 #include "scene/scene_file.h"
 #include "scene/scene_keys.h"
+#include "scene/scene_value.h"
 #include "scene/scene_write.h"
 
 #include <criterion/criterion.h>
@@ -672,6 +673,155 @@ Test(scene, key_reference_has_every_key)
   const struct key *keys = key_table(&count);
   for (size_t i = 0; i < count; i++) cr_expect(strstr(text, keys[i].path), "%s", keys[i].path);
   free(text);
+}
+
+/* A case with a listed disc and a fill, so that any key may be replaced. */
+static const char furnished[] = "domain: {size: [100, 200]}\nfluid: {viscosity: 0.05}\nrun: {steps: 10}\n"
+                                "particles:\n  density: 2\n  discs: [{radius: 5, position: [50, 180]}]\n"
+                                "  fill: {radius: 4, spacing: 20, region: [0, 0, 100, 100]}\n";
+
+/* True if the case with this number (of a vector: in x) for the key is refused for the key's range. */
+static bool out_of_range(const struct key *key, double number)
+{
+  char path[KEY_PATH + 8], set[256], allowed[VALUE_TEXT];
+  const char *brackets = strstr(key->path, "[]");
+  const int before = brackets ? (int)(brackets - key->path) : (int)strlen(key->path);
+  snprintf(path, sizeof path, "%.*s%s%s", before, key->path, brackets ? ".0" : "", brackets ? brackets + 2 : "");
+  snprintf(set, sizeof set, key->kind == KEY_VECTOR ? "%s=[%.17g, 0]" : "%s=%.17g", path, number);
+  value_describe(key, allowed);
+  struct reading reading = read_with(furnished, set);
+  bool refused = false;
+  for (size_t i = 0; i < reading.errors.count; i++) {
+    const char *line = reading.errors.lines[i];
+    refused |= strstr(line, path) && strstr(line, allowed) && strstr(line, "got ");
+  }
+  release(&reading);
+  return refused;
+}
+
+/* The number itself and its neighbours, inside and outside of the range. */
+static void expect_end(const struct key *key, double end, bool open, int outwards)
+{
+  const bool whole = key->kind == KEY_INTEGER || key->kind == KEY_LONG;
+  const double far = outwards > 0 ? (double)INFINITY : -(double)INFINITY;
+  double outside = whole ? end + outwards : nextafter(end, far), inside = whole ? end - outwards : nextafter(end, -far);
+  if (end == 0 && !whole) outside = outwards * 1e-300, inside = -outside; /* what is smaller underflows */
+  cr_expect_eq(out_of_range(key, end), open, "%s at %g", key->path, end);
+  cr_expect(out_of_range(key, outside), "%s beyond %g", key->path, end);
+  cr_expect_not(out_of_range(key, inside), "%s before %g", key->path, end);
+}
+
+Test(scene, every_range_of_the_table_ends_exactly_where_it_says)
+{
+  size_t count, ends = 0;
+  const struct key *keys = key_table(&count);
+  for (size_t i = 0; i < count; i++) {
+    const struct key *key = &keys[i];
+    const bool single = key->kind == KEY_NUMBER || key->kind == KEY_INTEGER || key->kind == KEY_LONG;
+    char left, right;
+    double low, high;
+    if ((!single && key->kind != KEY_VECTOR) || key_within(key->path, "units")) continue;
+    cr_assert_eq(sscanf(key->allowed, "%c%lf, %lf%c", &left, &low, &high, &right), 4, "%s", key->path);
+    if (single && isfinite(low)) expect_end(key, low, left == '(', -1), ends++;
+    if (isfinite(high)) expect_end(key, high, right == ')', 1), ends++;
+  }
+  cr_expect_gt(ends, 45);
+}
+
+/* Limits that follow from several keys: what is refused lies beside what is not. */
+Test(scene, limits_between_keys_are_refused_from_where_they_are_passed)
+{
+  static const struct {
+    const char *key, *good, *bad;
+  } limits[] = {
+      {"domain.size", "[65536, 131072]", "[65536, 131073]"},
+      {"particles.discs", "[{radius: 5, position: [0, 0]}]", "[{radius: 5, position: [-1e-300, 0]}]"},
+      {"particles.discs", "[{radius: 5, position: [99.99999999999999, 199.99999999999997]}]",
+       "[{radius: 5, position: [100, 150]}]"},
+      {"particles.discs", "[{radius: 5, position: [50, 150]}]", "[{radius: 5, position: [50, 200]}]"},
+      {"particles.discs", "[{radius: 10, position: [50, 150], spin: 0.03}]",
+       "[{radius: 10, position: [50, 150], spin: 0.0300000001}]"},
+      {"particles.discs", "[{radius: 4, position: [50, 150], velocity: [-0.15, 0.2], spin: -0.0124}]",
+       "[{radius: 4, position: [50, 150], velocity: [-0.15, 0.2], spin: -0.0126}]"},
+      {"particles.discs", "[{radius: 5, position: [50, 150], fixed: true, spin: 0.06}]",
+       "[{radius: 5, position: [50, 150], fixed: true, velocity: [1e-300, 0]}]"},
+      {"particles.discs", "[{radius: 1, position: [50, 150]}, {radius: 1, position: [50, 150.00000000000003]}]",
+       "[{radius: 1, position: [50, 150]}, {radius: 1, position: [50, 150]}]"},
+      {"particles.discs",
+       "[{radius: 99, position: [50, 150]}, {radius: 99, position: [51, 150]}, {radius: 99, position: [52, 150]}, "
+       "{radius: "
+       "99, position: [53, 150]}]",
+       "[{radius: 99, position: [50, 150]}, {radius: 99, position: [51, 150]}, {radius: 99, position: [52, 150]}, "
+       "{radius: "
+       "99, position: [53, 150]}, {radius: 0.5, position: [54, 150]}]"},
+      {"domain", "{size: [100, 200], left: periodic, right: periodic, top: {velocity: [0.1, 0]}}",
+       "{size: [100, 200], left: periodic, right: periodic, top: {velocity: [0.1, 1e-300]}}"},
+      {"domain", "{size: [100, 200], left: {type: inlet, velocity: [1e-300, 0.1]}, right: outlet}",
+       "{size: [100, 200], left: {type: inlet, velocity: [0, 0.1]}, right: outlet}"},
+      {"domain", "{size: [100, 200], right: {type: inlet, velocity: [-1e-300, 0]}, left: outlet}",
+       "{size: [100, 200], right: {type: inlet, velocity: [1e-300, 0]}, left: outlet}"},
+      {"particles.fill", "{radius: 10, spacing: 20}", "{radius: 10, spacing: 19.999999999999996}"},
+      {"particles.fill", "{radius: 4, spacing: 20, jitter: 10}",
+       "{radius: 4, spacing: 20, jitter: 10.000000000000002}"},
+      {"particles.fill", "{radius: 4, spacing: 20, region: [0, 0, 100, 200]}",
+       "{radius: 4, spacing: 20, region: [0, 0, 100, 200.00000000000003]}"},
+      {"particles.fill", "{radius: 4, spacing: 20, region: [0, 0, 100, 200]}",
+       "{radius: 4, spacing: 20, region: [0, 0, 100.00000000000001, 200]}"},
+      {"particles.fill", "{radius: 4, spacing: 8, region: [0, 92, 8, 100]}",
+       "{radius: 4, spacing: 8.000000000000002, region: [0, 92, 8, 100]}"},
+      {"particles.fill", "{radius: 1, spacing: 2, region: [0, 0, 2, 2]}",
+       "{radius: 1, spacing: 2, region: [2, 0, 2, 2]}"},
+      {"output.fields", "{every: 0, region: [99, 199, 100, 200]}", "{every: 0, region: [100, 199, 100, 200]}"},
+      {"output.fields", "{every: 0, region: [0, 0, 100, 200]}", "{every: 0, region: [0, 0, 101, 200]}"},
+      {"output.fields", "{every: 0, region: [0, 0, 100, 200]}", "{every: 0, region: [0, 0, 100, 201]}"},
+      {"output.fields", "{every: 0, region: [0, 0, 1, 1]}", "{every: 0, region: [0, 0, 1.5, 1]}"},
+      {"contact", "{area: lens, search: linked-cell}", "{area: cells, search: linked-cell}"},
+      {"fluid", "{viscosity: 0.05, zero_flux: true}", "{viscosity: 0.05, zero_flux: 2}"},
+      {"fluid", "{viscosity: 1e-15}", "{viscosity: 1e-17}"},
+      {"fluid", "{viscosity: 0.1, magic: 1e-15}", "{viscosity: 0.1, magic: 1e-17}"},
+  };
+  for (size_t i = 0; i < sizeof limits / sizeof limits[0]; i++)
+    for (int bad = 0; bad < 2; bad++) {
+      char set[512];
+      snprintf(set, sizeof set, "%s=%s", limits[i].key, bad ? limits[i].bad : limits[i].good);
+      struct reading reading = read_with(furnished, set);
+      if (reading.valid == bad) scene_errors_print(&reading.errors, stderr);
+      cr_expect_eq(reading.valid, !bad, "%s", set);
+      release(&reading);
+    }
+}
+
+/* A disc that is wider than the box less four cells would meet its own image, along periodic axes alone. */
+Test(scene, disc_may_be_four_cells_narrower_than_a_periodic_extent)
+{
+  static const struct {
+    const char *sides;
+    double radius;
+    bool valid;
+  } discs[] = {{"left: periodic, right: periodic", 48, true},
+               {"left: periodic, right: periodic", 48.00000000000001, false},
+               {"bottom: periodic, top: periodic", 98, true},
+               {"bottom: periodic, top: periodic", 98.00000000000001, false},
+               {"left: wall", 200, true}};
+  for (size_t i = 0; i < sizeof discs / sizeof discs[0]; i++)
+    for (int fill = 0; fill < 2; fill++) {
+      char text[512];
+      if (fill && discs[i].radius > 100) continue;
+      snprintf(text, sizeof text,
+               fill ? "domain: {size: [100, 200], %s}\nfluid: {viscosity: 0.05}\nrun: {steps: 1}\n"
+                      "particles: {density: 2, fill: {spacing: 100, radius: %.17g}}\n"
+                    : "domain: {size: [100, 200], %s}\nfluid: {viscosity: 0.05}\nrun: {steps: 1}\n"
+                      "particles: {density: 2, discs: [{position: [50, 100], radius: %.17g}]}\n",
+               discs[i].sides, discs[i].radius);
+      struct reading reading = read_text(text);
+      if (fill && discs[i].radius > 50) {
+        cr_expect_not(reading.valid); /* than half the spacing */
+        cr_expect_eq(reading.errors.count, discs[i].valid ? 1 : 2);
+      } else {
+        cr_expect_eq(reading.valid, discs[i].valid, "%s", text);
+      }
+      release(&reading);
+    }
 }
 
 /* Golden tests: tests/broken/NAME.yaml and what is said about it in NAME.expected. */

@@ -33,6 +33,103 @@ Test(unit, conversions_give_the_number_that_a_person_would)
   cr_expect_eq(converted(4e8, "N/m^3", "fluid density*cells/step^2"), 1000);
 }
 
+/* Each name with its value in SI base units, by the SI brochure (2019). */
+static const struct {
+  const char *name;
+  double value;
+  const char *base;
+} in_base_units[] = {
+    {"m", 1, "m"},
+    {"km", 1000, "m"},
+    {"cm", 0.01, "m"},
+    {"mm", 0.001, "m"},
+    {"um", 0.000001, "m"},
+    {"nm", 0.000000001, "m"},
+    {"s", 1, "s"},
+    {"ms", 0.001, "s"},
+    {"us", 0.000001, "s"},
+    {"min", 60, "s"},
+    {"h", 3600, "s"},
+    {"Hz", 1, "1/s"},
+    {"kg", 1, "kg"},
+    {"g", 0.001, "kg"},
+    {"mg", 0.000001, "kg"},
+    {"N", 1, "kg*m/s^2"},
+    {"mN", 0.001, "kg*m/s^2"},
+    {"Pa", 1, "kg/m/s^2"},
+    {"rad", 1, ""},
+    {"radians", 1, ""},
+    {"deg", 3.14159265358979323846 / 180, ""},
+    {"rpm", 2 * 3.14159265358979323846 / 60, "1/s"},
+    {"1", 1, ""},
+};
+
+enum { NAMES = sizeof in_base_units / sizeof in_base_units[0] };
+
+Test(unit, every_name_has_its_value_in_si_base_units_alone_and_to_a_power)
+{
+  for (int k = 0; k < NAMES; k++) {
+    char squared[32], per[64];
+    struct unit unit, base, power;
+    cr_assert(unit_parse(in_base_units[k].name, &lattice, &unit), "%s", in_base_units[k].name);
+    cr_assert(unit_parse(in_base_units[k].base, &lattice, &base));
+    cr_expect(unit_same_dimension(&unit, &base) && !unit.lattice, "%s", in_base_units[k].name);
+    cr_expect_float_eq((double)(unit.scale / base.scale), in_base_units[k].value, 4e-16 * in_base_units[k].value, "%s",
+                       in_base_units[k].name);
+    snprintf(squared, sizeof squared, "%s^2", in_base_units[k].name);
+    snprintf(per, sizeof per, "%s/%s", squared, in_base_units[k].name);
+    const double value = in_base_units[k].value;
+    cr_assert(unit_parse(squared, &lattice, &power));
+    cr_expect_float_eq((double)power.scale, value * value, 1e-14 * value * value, "%s", squared);
+    cr_assert(unit_parse(per, &lattice, &power) && unit_same_dimension(&power, &unit), "%s", per);
+    cr_expect_float_eq((double)power.scale, value, 1e-14 * value, "%s", per);
+  }
+}
+
+Test(unit, no_name_is_without_a_value_above)
+{
+  size_t count = 0;
+  for (const char *name; (name = unit_name(count)); count++) {
+    bool found = false;
+    for (int k = 0; k < NAMES; k++) found |= strcmp(in_base_units[k].name, name) == 0;
+    cr_expect(found, "%s", name);
+  }
+  cr_expect_eq(count, NAMES);
+}
+
+Test(unit, of_the_lattice_have_the_values_of_the_units_block)
+{
+  static const struct {
+    const char *name, *base;
+    double value;
+  } names[] = {{"cells", "m", 1e-4}, {"step", "s", 5e-4}, {"steps", "s", 5e-4}, {"fluid density", "kg/m^3", 1000}};
+  for (int k = 0; k < 4; k++) {
+    struct unit unit, unknown;
+    cr_expect_eq(converted(1, names[k].name, names[k].base), names[k].value, "%s", names[k].name);
+    cr_assert(unit_parse(names[k].name, &lattice, &unit) && unit.lattice);
+    cr_assert(unit_parse(names[k].name, &(struct units){0}, &unknown));
+    cr_expect_eq(unknown.scale, 0, "%s without a units block", names[k].name);
+  }
+}
+
+Test(unit, dimension_is_told_in_si_base_units)
+{
+  static const char *const texts[][2] = {{"fluid density*cells^3/step^2", "kg/s^2"},
+                                         {"fluid density*cells^4/step^2", "kg*m/s^2"},
+                                         {"fluid density*cells/step^2", "kg/m^2/s^2"},
+                                         {"cells^2/step", "m^2/s"},
+                                         {"radians/step", "1/s"},
+                                         {"radians", ""},
+                                         {"Pa", "kg/m/s^2"}};
+  for (size_t k = 0; k < sizeof texts / sizeof texts[0]; k++) {
+    struct unit unit;
+    char text[UNIT_TEXT];
+    cr_assert(unit_parse(texts[k][0], &lattice, &unit));
+    unit_si_text(&unit, text);
+    cr_expect_str_eq(text, texts[k][1]);
+  }
+}
+
 Test(unit, what_is_no_unit_is_refused)
 {
   static const char *const wrong[] = {"furlong", "m^", "m^x", "m//s", "m/", "/s", "m s", "m^2^2", "m^99", "(m)", "m*"};

@@ -63,6 +63,11 @@ static bool find_physical(const char *name, struct named *found)
   return false;
 }
 
+const char *unit_name(size_t k)
+{
+  return k < sizeof physical / sizeof physical[0] ? physical[k].name : NULL;
+}
+
 /* Multiplies the unit by a name of `length` characters, spaces around it left out, to a power. */
 static bool multiply(struct unit *unit, const char *name, size_t length, int power, const struct units *units)
 {

@@ -7,6 +7,7 @@
 #define DELBM_LATTICE_UNITS_H
 
 #include <stdbool.h>
+#include <stddef.h>
 
 /* What the lattice stands for, in SI. All zero: nothing; a density of 0 is not known. */
 struct units {
@@ -23,6 +24,9 @@ struct unit {
 
 /* Reads names joined by * and /, each with a whole power: "kg*m/s^2". False for what is no unit; "" is the number 1. */
 bool unit_parse(const char *text, const struct units *units, struct unit *unit);
+
+/* The names of physical units, one by one; NULL past the last. */
+const char *unit_name(size_t k);
 
 bool unit_same_dimension(const struct unit *a, const struct unit *b);
 
