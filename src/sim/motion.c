@@ -80,10 +80,11 @@ static bool check_disc(const struct scene *scene, const struct discs *d, size_t 
                        "diverged at step %lld: disc %zu near (%.1f, %.1f) moves at (%g, %g), spin %g: above Mach 0.6",
                        (long long)step, i, from[0], from[1], d->vx[i], d->vy[i], d->omega[i]);
   if (has_left(scene, d, i))
-    return status_fail(status, DELBM_FAILED,
-                       "step %lld: disc %zu near (%.1f, %.1f) was pushed out of the box: contact.stiffness, %g, is too "
-                       "small for its weight or speed",
-                       (long long)step, i, from[0], from[1], scene->contact.stiffness);
+    return status_fail(
+        status, DELBM_FAILED,
+        "step %lld: disc %zu near (%.1f, %.1f) was pushed out of the box: contact.stiffness, %g, does not "
+        "hold it against its weight, its speed or a disc that pushes it",
+        (long long)step, i, from[0], from[1], scene->contact.stiffness);
   return true;
 }
 
