@@ -197,6 +197,33 @@ Test(divergence, of_cells_too_coarse_for_the_flow_names_the_grid_reynolds_number
   expect_words(status.message, "leads to speeds", false);
 }
 
+Test(divergence, of_light_discs_in_the_explicit_solve_names_the_solve)
+{
+  struct scene scene = scene_box(64, 64, 0.05, SIDES_CLOSED);
+  struct simulation_report report;
+  struct status status;
+  scene.coupling.solve = SOLVE_EXPLICIT_AVERAGED;
+  scene_add_disc(&scene, 8, 0.3, 32, 32);
+  scene.particles.gravity[1] = -1e-3;
+  diverge(&scene, 5000, &status, &report);
+  expect_words(status.message, "explicit-averaged diverges for light discs (disc 0: density 0.3), implicit does not",
+               true);
+  expect_words(status.message, "speeds", false);
+}
+
+Test(divergence, of_discs_too_heavy_for_the_fluid_names_gravity)
+{
+  struct scene scene = scene_box(40, 80, 0.02, SIDES_CLOSED);
+  struct simulation_report report;
+  struct status status;
+  for (int k = 0; k < 8; k++) scene_add_disc(&scene, 8, 4, k % 2 ? 10 : 30, 12 + 17 * (double)(k / 2));
+  scene.particles.gravity[1] = -0.02;
+  cr_expect_float_eq(estimate_load(&scene, 1), 8 * M_PI * 64 * 3 * 0.02 / 40 * 3, 1e-12);
+  cr_expect_eq(estimate_load(&scene, 0), 0);
+  diverge(&scene, 20000, &status, &report);
+  expect_words(status.message, "the discs weigh 724 % of the fluid's pressure", true);
+}
+
 /* Whether a run is told to have diverged by its speed or by a cell that is not finite. */
 Test(divergence, leaves_the_largest_mach_number_that_the_fluid_had_in_the_report)
 {

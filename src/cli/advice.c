@@ -1,5 +1,6 @@
 #include "cli/advice.h"
 
+#include "sim/estimate.h"
 #include "sim/plan.h"
 
 #include <math.h>
@@ -19,15 +20,12 @@ static void advise_rates(const struct scene *scene)
 /* Map "density of a settling disc". */
 static void advise_solve(const struct scene *scene)
 {
-  if (scene->coupling.solve != SOLVE_EXPLICIT_AVERAGED) return;
-  for (size_t i = 0; i < scene->particles.count; i++) {
-    const struct disc_spec *disc = &scene->particles.discs[i];
-    if (disc->motion != DISC_FREE || disc->density >= 0.8) continue;
-    printf("  note: explicit-averaged diverges for light discs (disc %zu: density %g); solve: implicit does not "
-           "(bench/README.md, stability)\n",
-           i, disc->density);
-    return;
-  }
+  const size_t disc = estimate_lightest_explicit(scene);
+  if (disc < scene->particles.count)
+    printf(
+        "  note: explicit-averaged diverges for light discs (disc %zu: density %g); coupling.solve: implicit does not "
+        "(bench/README.md, stability)\n",
+        disc, scene->particles.discs[disc].density);
 }
 
 /* At small viscosity a disc of a few cells holds less fluid than its area, which is what its buoyancy and inertia are taken
@@ -89,29 +87,15 @@ static void advise_substeps(const struct scene *scene)
            scene->contact.substeps, needed);
 }
 
-/* What gravity adds to the momentum of the box in a step. */
-static void weigh(const struct scene *scene, double weight[2])
-{
-  weight[0] = weight[1] = 0;
-  for (size_t i = 0; i < scene->particles.count; i++) {
-    const struct disc_spec *disc = &scene->particles.discs[i];
-    if (disc->motion != DISC_FREE) continue;
-    const double mass = M_PI * disc->radius * disc->radius * (disc->density - 1);
-    for (int axis = 0; axis < 2; axis++) weight[axis] += mass * scene->particles.gravity[axis];
-  }
-}
-
 /* Map "packing": discs held up by the pressure of a fluid that has not so much of it. */
-static void advise_weight(const struct scene *scene, const double weight[2])
+static void advise_weight(const struct scene *scene)
 {
-  const double pressure = 1.0 / 3;
   for (int axis = 0; axis < 2; axis++) {
-    const double part = fabs(weight[axis]) / scene->domain.size[!axis] / pressure;
-    if (!scene_is_closed(scene, axis) || part < 0.2) continue;
-    printf(
-        "  note: the discs weigh %.0f %% of the fluid's pressure on the side below; it rings or diverges: less gravity "
-        "and more steps are better (bench/README.md, stability)\n",
-        100 * part);
+    const double part = estimate_load(scene, axis);
+    if (part < estimate_most_load) continue;
+    printf("  note: the discs weigh %.0f %% of the fluid's pressure on the side below; it rings or diverges; better: "
+           "particles.gravity <= %.2g cells/step^2, and more steps (bench/README.md, stability)\n",
+           100 * part, fabs(scene->particles.gravity[axis]) * estimate_most_load / part);
   }
 }
 
@@ -152,8 +136,8 @@ void print_advice(const struct scene *scene)
   advise_light(scene);
   advise_form(scene);
   advise_owen(scene);
-  weigh(scene, weight);
-  advise_weight(scene, weight);
+  estimate_weight(scene, weight);
+  advise_weight(scene);
   advise_fall(scene, weight);
   advise_substeps(scene);
   advise_sound(scene);

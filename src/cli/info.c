@@ -192,7 +192,7 @@ static void print_discs(const struct scene *scene)
   printf("discs        %zu (%zu free, %zu fixed, %zu driven), radius %g to %g, solid fraction %.4g\n",
          scene->particles.count, motions[DISC_FREE], motions[DISC_FIXED], motions[DISC_DRIVEN], smallest, largest,
          area / box);
-  if (smallest < 2) printf("  note: radius below 2 cells; forces on so small a disc are rough\n");
+  if (smallest < 2) printf("  note: radius below 2 cells; forces on so small a disc are rough; better: radius >= 2\n");
   printf("coupling     %s, %s\n", forms[scene->coupling.form],
          scene->coupling.solve == SOLVE_IMPLICIT ? "implicit" : "explicit-averaged");
 }

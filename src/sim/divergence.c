@@ -1,5 +1,5 @@
 /* The causes are looked for in the order of their weight as evidence. What the run shows (fluid that cannot leave) comes
- * before what the case leads one to expect: a start that is too sudden, a speed that is too high, cells that are too coarse,
+ * before what the case leads one to expect: discs too light for the explicit solve or too heavy for the fluid, a start that is too sudden, a speed that is too high, cells that are too coarse,
  * a viscosity that is too small. */
 #include "sim/divergence.h"
 
@@ -49,6 +49,30 @@ static bool explain_dam(const struct divergence *of, struct status *status)
              "(they lie before %.0f %% of the %s side)",
              100 * of->excess, 100 * part, sides[outlet]);
   return true;
+}
+
+static bool explain_solve(const struct divergence *of, struct status *status)
+{
+  const size_t disc = estimate_lightest_explicit(of->scene);
+  if (disc == of->scene->particles.count) return false;
+  status_add(status,
+             "; coupling.solve: explicit-averaged diverges for light discs (disc %zu: density %g), implicit does not",
+             disc, of->scene->particles.discs[disc].density);
+  return true;
+}
+
+static bool explain_load(const struct divergence *of, struct status *status)
+{
+  for (int axis = 0; axis < 2; axis++) {
+    const double part = estimate_load(of->scene, axis);
+    if (part < estimate_most_load) continue;
+    status_add(status,
+               "; the discs weigh %.0f %% of the fluid's pressure on the side below; better: particles.gravity <= %.2g "
+               "cells/step^2, and more steps",
+               100 * part, fabs(of->scene->particles.gravity[axis]) * estimate_most_load / part);
+    return true;
+  }
+  return false;
 }
 
 /* The inlet of the fastest fluid; SIDE_COUNT without any. */
@@ -125,7 +149,7 @@ static bool explain_excess(const struct divergence *of, struct status *status)
 void divergence_explain(const struct divergence *of, struct status *status)
 {
   const struct estimate fastest = estimate_fastest(of->scene, of->step);
-  if (explain_dam(of, status)) return;
+  if (explain_dam(of, status) || explain_solve(of, status) || explain_load(of, status)) return;
   const bool fast = explain_start(of, status) || explain_speed(of, &fastest, status);
   const bool coarse = explain_cells(of, &fastest, status) || explain_viscosity(of, status);
   if (!fast && !coarse) explain_excess(of, status);

@@ -138,3 +138,34 @@ struct estimate estimate_fastest(const struct scene *scene, int64_t steps)
   for (int axis = 0; axis < 2; axis++) consider_force(&fastest, scene, axis, steps);
   return fastest;
 }
+
+void estimate_weight(const struct scene *scene, double weight[2])
+{
+  weight[0] = weight[1] = 0;
+  for (size_t i = 0; i < scene->particles.count; i++) {
+    const struct disc_spec *disc = &scene->particles.discs[i];
+    if (disc->motion != DISC_FREE) continue;
+    const double mass = M_PI * disc->radius * disc->radius * (disc->density - 1);
+    for (int axis = 0; axis < 2; axis++) weight[axis] += mass * scene->particles.gravity[axis];
+  }
+}
+
+double estimate_load(const struct scene *scene, int axis)
+{
+  const double pressure = 1.0 / 3;
+  double weight[2];
+  estimate_weight(scene, weight);
+  return scene_is_closed(scene, axis) ? fabs(weight[axis]) / scene->domain.size[!axis] / pressure : 0;
+}
+
+size_t estimate_lightest_explicit(const struct scene *scene)
+{
+  const double least_density = 0.8;
+  size_t lightest = scene->particles.count;
+  for (size_t i = 0; i < scene->particles.count && scene->coupling.solve == SOLVE_EXPLICIT_AVERAGED; i++) {
+    const struct disc_spec *disc = &scene->particles.discs[i];
+    if (disc->motion != DISC_FREE || disc->density >= least_density) continue;
+    if (lightest == scene->particles.count || disc->density < scene->particles.discs[lightest].density) lightest = i;
+  }
+  return lightest;
+}

@@ -9,6 +9,9 @@
  * |u|/viscosity above which cells are too coarse for the flow. (For speed: scene_advised_speed.) */
 static const double estimate_least_tau = 0.503, estimate_most_grid_reynolds = 10;
 
+/* Part of the fluid's pressure above which the weight of discs makes it ring or diverge (bench stability, map "packing"). */
+static const double estimate_most_load = 0.2;
+
 enum { ESTIMATE_KEY = 64 };
 
 /* A speed that the scene leads to, and the number of the case that it comes from. */
@@ -31,5 +34,15 @@ double estimate_settling(double radius, double viscosity, double weight);
  * walls H apart at most g H^2/(8 viscosity), the largest of plane Poiseuille flow; past fixed discs at most what their
  * drag as a square array (Sangani & Acrivos 1982) or one by one allows. */
 double estimate_forced(const struct scene *scene, int axis, int64_t steps);
+
+/* What gravity adds to the momentum of the box in a step, by the free discs less their buoyancy. */
+void estimate_weight(const struct scene *scene, double weight[2]);
+
+/* Pressure of that weight on the side below, as a part of the fluid's at rest; 0 along an axis that no walls close. */
+double estimate_load(const struct scene *scene, int axis);
+
+/* The lightest of the discs that the explicit solve makes diverge (bench stability, map "density of a settling disc");
+ * particles.count without any. */
+size_t estimate_lightest_explicit(const struct scene *scene);
 
 #endif
