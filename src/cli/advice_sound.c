@@ -1,13 +1,14 @@
 /* Sound between two sides that both reflect rings at c_s/(2 H), H apart. Where that is near the frequency at which a disc in a
- * stream sheds vortices, they lock onto it and lift and Strouhal number are wrong, without any other sign. Measured (R = 5,
- * Re 100, U = 0.03, walls that move with the stream; tone over shedding frequency, length over height of the box, St):
+ * stream sheds vortices, it spoils lift and Strouhal number, without any other sign. Measured (R = 5, Re 100, U = 0.03, walls
+ * that move with the stream; tone over shedding frequency, length over height of the box, Strouhal number, standard deviation
+ * of the lift coefficient; published, without sides: 0.165 and 0.23):
  *
- *     tone   2.9   2.9   2.9   1.45  1.45  1.45  0.73  3.9   5.8
- *     L/H    0.90  1.35  1.80  0.45  0.90  1.80  0.45  1.20  1.80
- *     St     0.473 0.167 0.166 0.227 0.169 0.165 0.126 0.160 0.170
+ *     tone   2.9    2.9    2.9    1.46   1.46   1.46   0.73   3.9    4.5    5.9
+ *     L/H    0.90   1.35   1.80   0.45   0.90   1.80   0.45   1.20   1.38   1.80
+ *     St     0.473  0.167  0.166  0.162  0.169  0.165  0.130  0.160  0.163  0.170
+ *     C_L    0.56   0.36   0.32   0.52   0.46   0.30   0.23   0.19   0.20   0.25
  *
- * and with them the standard deviation of the lift coefficient is 0.68, 0.36, 0.32, 0.64, 0.46, 0.30, 0.24, 0.19, 0.24, so
- * boxes up to 1.5 times as long as high, with tones up to a factor of 3.5 from the shedding, are warned of. */
+ * So the warning is of boxes up to 1.5 times as long as high with a tone up to a factor of 3.5 from the shedding. */
 #include "cli/advice.h"
 
 #include <math.h>
@@ -57,7 +58,7 @@ void advise_sound(const struct scene *scene)
       const double shedding = strouhal(reynolds) * speed / (2 * disc->radius);
       if (tone > near_factor * shedding || shedding > near_factor * tone) continue;
       printf("  note: sound between the %s sides rings %.3g times a step, and disc %zu sheds vortices about %.3g times "
-             "(Strouhal number %.2g): in so short a box they may lock, and lift and Strouhal number be wrong; better: "
+             "(Strouhal number %.2g): in so short a box the sound may spoil lift and Strouhal number; better: "
              "domain.size[%d] >= %.0f\n",
              along == 0 ? "bottom and top" : "left and right", tone, i, shedding, strouhal(reynolds), along,
              ceil(short_box * height));
