@@ -1,12 +1,14 @@
 /* The fluid sweep alone: million cell updates a second of each kernel, in place, from one array to another (the classic
  * scheme), and blocked in time, beside a plain in-place read-modify-write of the same nine planes: the least that
- * memory allows for 18 values an update. Each is held against the reference before it is timed. Rates are medians of
- * alternating repeats, in a box that is periodic both ways. */
+ * memory allows for 18 values an update. Rates are medians of alternating repeats, in a box that is periodic both ways.
+ *
+ * The reference checks every kernel with the rates of every collision in a small box, and then each subject that was
+ * timed: waves are set in its box, it takes a few steps more, and two windows of cells are compared. */
+#include "accuracy.h"
 #include "base/clock.h"
 #include "bench.h"
 #include "fluid/boundary.h"
 #include "fluid/reference.h"
-#include "scenes.h"
 #include "sim/blocked.h"
 
 #include <math.h>
@@ -14,7 +16,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { REPEATS = 5, SMALL_X = 72, SMALL_Y = 66 };
+enum { REPEATS = 5, SMALL_X = 40, SMALL_Y = 34, DEPTHS = 6 };
+static const int depths[DEPTHS] = {1, 2, 4, 8, 16, 32};
 
 /* Ways to take a step. */
 enum way { IN_PLACE, TWO_ARRAYS, PLAIN, BLOCKED };
@@ -54,8 +57,7 @@ static void plain_pass(const struct populations *p)
   }
 }
 
-/* Row y pulls from `from` what streams into it, and leaves it collided in `to`; the columns beside the box are images.
- * */
+/* Row y pulls from `from` what streams into it, and leaves it collided in `to`; the columns beside the box are images. */
 static void two_arrays_step(struct subject *subject)
 {
   struct populations *from = &subject->flow.populations, *to = &subject->other;
@@ -75,7 +77,7 @@ static void two_arrays_step(struct subject *subject)
       source[i] = (char *)from->block + populations_slot(from, i, -d2q9_ex[i], y - d2q9_ey[i]) * size;
       target[i] = (char *)to->block + populations_slot(to, i, 0, y) * size;
     }
-    subject->flow.kernel->two_arrays(source, target, from->nx, &subject->flow.constants);
+    subject->flow.kernel->two_arrays[subject->flow.adaptive](source, target, from->nx, &subject->flow.constants);
   }
 #pragma omp single
   {
@@ -98,14 +100,14 @@ static void take_steps(struct subject *subject, int steps)
   }
 }
 
-/* Waves, so that no kernel works on zeros. */
+/* Waves so fast that adaptive rates differ from constant ones by far more than single precision rounds. */
 static void set_waves(struct populations *p)
 {
 #pragma omp parallel for schedule(static)
   for (int y = 0; y < p->ny; y++)
     for (int x = 0; x < p->nx; x++)
       for (int i = 0; i < Q; i++) {
-        const double wave = 1e-3 * sin(6.283 * x / p->nx + i) * cos(6.283 * y / p->ny - i);
+        const double wave = 0.05 * sin(2 * M_PI * x / p->nx + i) * cos(2 * M_PI * y / p->ny - i);
         populations_set(p, populations_slot(p, i, x, y), wave * d2q9_weight[i]);
       }
 }
@@ -128,48 +130,130 @@ static void subject_destroy(struct subject *subject)
   populations_destroy(&subject->other);
 }
 
-static struct scene periodic_box(int nx, int ny, const struct sweep_kernel *kernel)
+/* The box of a kernel with the rates of a collision. */
+static struct scene periodic_box(int nx, int ny, const struct sweep_kernel *kernel, enum accuracy_operator operator)
 {
-  struct scene scene = scene_box(nx, ny, 0.05, SIDES_PERIODIC);
-  scene.fluid.precision = kernel->precision;
+  const struct accuracy_choice choice = {.operator= operator, .precision = kernel->precision };
+  struct scene scene = accuracy_scene(&choice, nx, ny, 0.05, SIDES_PERIODIC);
   scene.fluid.kernel = (char *)kernel->name;
   return scene;
 }
 
-/* Six steps in a small box against the reference. With two arrays what is held is collided, not yet streamed, so that
- * its first step starts from the waves streamed: the reference is then one streaming behind. */
-static bool verify(const struct sweep_kernel *kernel, enum way way, const struct blocking *blocking,
+/* Cells x .. x + nx - 1, y .. y + ny - 1 of the periodic box, counted on beyond its sides. */
+struct window {
+  int x, y, nx, ny;
+};
+
+/* What the subject has of f_i at a cell of the window, after an even number of steps. */
+static double value_at(const struct subject *subject, const struct window *window, int x, int y, int i)
+{
+  const struct populations *p = &subject->flow.populations;
+  const size_t slot = populations_slot(p, i, (window->x + x + p->nx) % p->nx, (window->y + y + p->ny) % p->ny);
+  return populations_get(p, slot) + d2q9_weight[i];
+}
+
+/* The window's populations for the reference. With two arrays the subject has them collided, not yet streamed: the first
+ * step of the subject starts from them streamed. */
+static void copy_window(const struct subject *subject, const struct window *window, struct reference *reference)
+{
+  for (int y = 0; y < window->ny; y++)
+    for (int x = 0; x < window->nx; x++)
+      for (int i = 0; i < Q; i++) {
+        const bool back = subject->way == TWO_ARRAYS;
+        reference->f[(y * window->nx + x) * Q + i] =
+            value_at(subject, window, back ? x - d2q9_ex[i] : x, back ? y - d2q9_ey[i] : y, i);
+      }
+}
+
+/* Largest difference over the cells of the window that are `margin` or more from its edge. */
+static double largest_difference(const struct subject *subject, const struct window *window, int margin,
+                                 const struct reference *reference)
+{
+  const double *expected = subject->way == TWO_ARRAYS ? reference->collided : reference->f;
+  double largest = 0;
+  for (int y = margin; y < window->ny - margin; y++)
+    for (int x = margin; x < window->nx - margin; x++)
+      for (int i = 0; i < Q; i++) {
+        const double off = fabs(value_at(subject, window, x, y, i) - expected[(y * window->nx + x) * Q + i]);
+        if (isnan(off)) return INFINITY;
+        largest = fmax(largest, off);
+      }
+  return largest;
+}
+
+/* Steps of a check: even, and whole blocks. */
+static int steps_to_check(const struct subject *subject)
+{
+  const int depth = subject->way == BLOCKED ? subject->blocking.depth : 1;
+  return depth < 6 ? 12 / depth * depth : depth;
+}
+
+/* The subject takes a few steps; in each of `count` windows it must agree with the reference, which has the window
+ * alone: what lies beyond has by then reached no farther than one cell a step, unless the window is the whole box. */
+static bool agrees(struct subject *subject, const struct window *windows, int count, double *largest,
                    struct status *status)
 {
-  const struct scene scene = periodic_box(SMALL_X, SMALL_Y, kernel);
-  struct subject subject;
-  struct reference reference;
-  if (!subject_create(&subject, &scene, way, blocking, status)) return false;
-  if (!reference_create(&reference, SMALL_X, SMALL_Y, status)) return false;
-  const struct populations *p = &subject.flow.populations;
-  for (int k = 0; k < SMALL_X * SMALL_Y; k++)
-    for (int i = 0; i < Q; i++) {
-      const int x = k % SMALL_X - (way == TWO_ARRAYS ? d2q9_ex[i] : 0),
-                y = k / SMALL_X - (way == TWO_ARRAYS ? d2q9_ey[i] : 0);
-      const size_t slot = populations_slot(p, i, (x + SMALL_X) % SMALL_X, (y + SMALL_Y) % SMALL_Y);
-      reference.f[k * Q + i] = populations_get(p, slot) + d2q9_weight[i];
-    }
-  const int steps = way == BLOCKED ? 2 * blocking->depth : 6;
-#pragma omp parallel
-  take_steps(&subject, steps);
+  const int steps = steps_to_check(subject);
+  const struct populations *p = &subject->flow.populations;
   const struct reference_cover none = {0};
-  for (int k = 0; k < steps; k++) reference_step(&reference, scene.domain.side, &subject.flow.constants, &none);
-  const double *expected = way == TWO_ARRAYS ? reference.collided : reference.f;
-  double largest = 0;
-  for (int k = 0; k < SMALL_X * SMALL_Y * Q; k++) {
-    const size_t slot = populations_slot(p, k % Q, k / Q % SMALL_X, k / Q / SMALL_X);
-    largest = fmax(largest, fabs(populations_get(p, slot) + d2q9_weight[k % Q] - expected[k]));
+  struct reference references[2] = {{0}};
+  bool ok = true;
+  for (int w = 0; ok && w < count; w++) {
+    ok = reference_create(&references[w], windows[w].nx, windows[w].ny, status);
+    if (ok) copy_window(subject, &windows[w], &references[w]);
   }
-  subject_destroy(&subject);
-  reference_destroy(&reference);
-  if (largest <= (kernel->precision == PRECISION_DOUBLE ? 1e-14 : 1e-6)) return true;
-  return status_fail(status, DELBM_FAILED, "kernel %s, way %d, differs from the reference by %g", kernel->name, way,
-                     largest);
+#pragma omp parallel if (ok)
+  if (ok) take_steps(subject, steps);
+  *largest = 0;
+  for (int w = 0; ok && w < count; w++) {
+    const bool whole = windows[w].nx == p->nx && windows[w].ny == p->ny;
+    for (int k = 0; k < steps; k++)
+      reference_step(&references[w], subject->flow.scene->domain.side, &subject->flow.constants, &none);
+    *largest = fmax(*largest, largest_difference(subject, &windows[w], whole ? 0 : steps, &references[w]));
+  }
+  for (int w = 0; w < count; w++) reference_destroy(&references[w]);
+  return ok;
+}
+static bool verify(struct subject *subject, const struct window *windows, int count, struct status *status)
+{
+  static const char *const ways[] = {"in place", "two arrays", "plain", "blocked"};
+  const struct sweep_kernel *kernel = subject->flow.kernel;
+  double off;
+  set_waves(&subject->flow.populations);
+  if (!agrees(subject, windows, count, &off, status)) return false;
+  if (off <= (kernel->precision == PRECISION_DOUBLE ? 2e-15 : 2e-8)) return true;
+  return status_fail(
+      status, DELBM_FAILED, "bench sweep: %s, %s, %s rates, %d columns: differs from the reference by %g", kernel->name,
+      ways[subject->way], subject->flow.adaptive ? "adaptive" : "constant", subject->flow.populations.nx, off);
+}
+
+/* Every way with the rates of every collision, over the whole of a small box. */
+static bool verify_collisions(const struct sweep_kernel *kernel, struct status *status)
+{
+  static const enum way ways[] = {IN_PLACE, TWO_ARRAYS, BLOCKED};
+  static const enum accuracy_operator operators[] = {OPERATOR_BGK, OPERATOR_TRT, OPERATOR_MRT, OPERATOR_ADAPTIVE};
+  const int deepest = blocked_deepest(SMALL_Y, omp_get_max_threads());
+  const struct blocking blocking = {deepest < 4 ? 1 : 4, 0};
+  const struct window whole = {0, 0, SMALL_X, SMALL_Y};
+  bool ok = true;
+  for (int o = 0; ok && o < 4; o++)
+    for (int w = 0; ok && w < 3; w++) {
+      const struct scene scene = periodic_box(SMALL_X, SMALL_Y, kernel, operators[o]);
+      struct subject subject;
+      ok = subject_create(&subject, &scene, ways[w], &blocking, status) && verify(&subject, &whole, 1, status);
+      subject_destroy(&subject);
+    }
+  return ok;
+}
+
+/* A subject as it was timed, at a corner of the box and in its middle, where threads share it. */
+static bool verify_timed(struct subject *subject, struct status *status)
+{
+  const struct populations *p = &subject->flow.populations;
+  const int margin = steps_to_check(subject), edge = 8 + 2 * margin;
+  const struct window windows[2] = {{-edge / 2, -edge / 2, edge, edge},
+                                    {p->nx / 2 - edge / 2, p->ny / 2 - edge / 2, edge, edge}};
+  return verify(subject, windows, 2, status);
 }
 
 static int compare_doubles(const void *a, const void *b)
@@ -178,72 +262,104 @@ static int compare_doubles(const void *a, const void *b)
   return (l > r) - (l < r);
 }
 
-/* Median rates, in million updates a second, of several subjects taken in turn. */
-static void measure(struct subject *subjects, int count, const struct bench_report *report, double *rates)
-{
-  double samples[16][REPEATS];
-  const double cells = (double)subjects[0].flow.populations.nx * subjects[0].flow.populations.ny;
-  for (int r = -1; r < REPEATS; r++)
-    for (int k = 0; k < count; k++) {
-      const int depth = subjects[k].way == BLOCKED ? subjects[k].blocking.depth : 2;
-      const int steps = depth * (int)fmax(1, (report->quick ? 1e6 : 2e8) / cells / depth);
-      const double start = clock_now();
-#pragma omp parallel
-      take_steps(&subjects[k], steps);
-      if (r >= 0) samples[k][r] = cells * steps / (clock_now() - start) / 1e6;
-    }
-  for (int k = 0; k < count; k++) {
-    qsort(samples[k], REPEATS, sizeof samples[k][0], compare_doubles);
-    rates[k] = samples[k][REPEATS / 2];
-  }
-}
+/* A kernel in a box of size^2: as the program runs it, from one array to another, the plain pass, in place with constant
+ * rates, and blocked in time. */
+enum { DEFAULT, CLASSIC, BARE, CONSTANT, DEEP, SUBJECTS = DEEP + DEPTHS };
 
-/* One row of the table: a kernel in a box of size^2, in all ways; the blocked depths where `depths` says so. */
-static bool bench_kernel(const struct sweep_kernel *kernel, int size, bool depths, const struct bench_report *report,
-                         struct status *status)
+struct comparison {
+  const struct sweep_kernel *kernel;
+  int size;
+  struct scene adaptive, constant;
+  struct subject subjects[SUBJECTS];
+  int count; /* of subjects: blocked only as deep as threads can */
+  double rates[SUBJECTS];
+};
+
+static bool comparison_create(struct comparison *c, const struct sweep_kernel *kernel, int size, bool blocked,
+                              struct status *status)
 {
-  static const int all_depths[] = {1, 2, 4, 8, 16, 32};
-  enum { DEPTHS = sizeof all_depths / sizeof all_depths[0] };
-  const struct scene scene = periodic_box(size, size, kernel);
-  const struct blocking none = {1, 0};
-  struct subject subjects[3 + DEPTHS];
-  double rates[3 + DEPTHS];
-  int count = 0;
-  for (enum way way = IN_PLACE; way <= PLAIN; way++) {
-    if (way != PLAIN && !verify(kernel, way, &none, status)) return false;
-    if (!subject_create(&subjects[count++], &scene, way, &none, status)) return false;
-  }
-  for (int d = 0; depths && d < DEPTHS; d++) {
-    const struct blocking blocking = {all_depths[d], 0};
-    if (all_depths[d] <= blocked_deepest(SMALL_Y, omp_get_max_threads()) && !verify(kernel, BLOCKED, &blocking, status))
+  static const enum way ways[] = {[DEFAULT] = IN_PLACE, [CLASSIC] = TWO_ARRAYS, [BARE] = PLAIN, [CONSTANT] = IN_PLACE};
+  const int deepest = blocked_deepest(size, omp_get_max_threads());
+  *c = (struct comparison){.kernel = kernel,
+                           .size = size,
+                           .adaptive = periodic_box(size, size, kernel, OPERATOR_ADAPTIVE),
+                           .constant = periodic_box(size, size, kernel, OPERATOR_MRT)};
+  int wanted = DEEP;
+  while (blocked && wanted < SUBJECTS && depths[wanted - DEEP] <= deepest) wanted++;
+  for (; c->count < wanted; c->count++) {
+    const int k = c->count;
+    const struct blocking blocking = {k < DEEP ? 1 : depths[k - DEEP], 0};
+    if (!subject_create(&c->subjects[k], k == CONSTANT ? &c->constant : &c->adaptive, k < DEEP ? ways[k] : BLOCKED,
+                        &blocking, status))
       return false;
-    if (!subject_create(&subjects[count++], &scene, BLOCKED, &blocking, status)) return false;
   }
-  measure(subjects, count, report, rates);
-  for (int k = 0; k < count; k++) subject_destroy(&subjects[k]);
-  const double bytes = 2 * Q * (kernel->precision == PRECISION_DOUBLE ? 8 : 4);
-  printf("%-17s %5d %4d %8.0f %6.2f %6.1f %8.0f %6.2f", kernel->name, size, omp_get_max_threads(), rates[0],
-         rates[0] / rates[2], rates[0] * bytes / 1e3, rates[1], rates[0] / rates[1]);
-  for (int d = 0; depths && d < DEPTHS; d++) printf(" %6.0f", rates[3 + d]);
-  printf("\n");
-  fflush(stdout);
-  if (!report->json) return true;
-  fprintf(report->json, ", \"%s %d %d\": {\"in_place\": %.6g, \"two_arrays\": %.6g, \"plain\": %.6g", kernel->name,
-          size, omp_get_max_threads(), rates[0], rates[1], rates[2]);
-  for (int d = 0; depths && d < DEPTHS; d++)
-    fprintf(report->json, ", \"blocked_%d\": %.6g", all_depths[d], rates[3 + d]);
-  fprintf(report->json, "}");
   return true;
 }
 
+static void comparison_destroy(struct comparison *c)
+{
+  for (int k = 0; k < SUBJECTS; k++) subject_destroy(&c->subjects[k]);
+}
+
+/* Median rates, in million updates a second, of the subjects taken in turn. */
+static void measure(struct comparison *c, bool quick)
+{
+  double samples[SUBJECTS][REPEATS];
+  const double cells = (double)c->size * c->size;
+  for (int r = -1; r < REPEATS; r++)
+    for (int k = 0; k < c->count; k++) {
+      const int block = (int)fmax(2, c->subjects[k].blocking.depth);
+      const int steps = block * (int)fmax(1, (quick ? 1e6 : 2e8) / cells / block);
+      const double start = clock_now();
+#pragma omp parallel
+      take_steps(&c->subjects[k], steps);
+      if (r >= 0) samples[k][r] = cells * steps / (clock_now() - start) / 1e6;
+    }
+  for (int k = 0; k < c->count; k++) {
+    qsort(samples[k], REPEATS, sizeof samples[k][0], compare_doubles);
+    c->rates[k] = samples[k][REPEATS / 2];
+  }
+}
+
+static void report_comparison(const struct comparison *c, FILE *json)
+{
+  const double *rates = c->rates;
+  const double bytes = 2 * Q * (c->kernel->precision == PRECISION_DOUBLE ? 8 : 4);
+  printf("%-17s %5d %4d %8.0f %6.2f %6.1f %8.0f %6.2f %8.0f", c->kernel->name, c->size, omp_get_max_threads(),
+         rates[DEFAULT], rates[DEFAULT] / rates[BARE], rates[DEFAULT] * bytes / 1e3, rates[CLASSIC],
+         rates[DEFAULT] / rates[CLASSIC], rates[CONSTANT]);
+  for (int k = DEEP; k < c->count; k++) printf(" %6.0f", rates[k]);
+  printf("\n");
+  fflush(stdout);
+  if (!json) return;
+  fprintf(json, ", \"%s %d %d\": {\"in_place\": %.6g, \"two_arrays\": %.6g, \"plain\": %.6g, \"constant_rates\": %.6g",
+          c->kernel->name, c->size, omp_get_max_threads(), rates[DEFAULT], rates[CLASSIC], rates[BARE],
+          rates[CONSTANT]);
+  for (int k = DEEP; k < c->count; k++) fprintf(json, ", \"blocked_%d\": %.6g", depths[k - DEEP], rates[k]);
+  fprintf(json, "}");
+}
+
+/* One row of the table. */
+static bool bench_kernel(const struct sweep_kernel *kernel, int size, bool blocked, const struct bench_report *report,
+                         struct status *status)
+{
+  struct comparison comparison = {0};
+  bool ok = verify_collisions(kernel, status) && comparison_create(&comparison, kernel, size, blocked, status);
+  if (ok) measure(&comparison, report->quick);
+  for (int k = 0; ok && k < comparison.count; k++) ok = k == BARE || verify_timed(&comparison.subjects[k], status);
+  if (ok) report_comparison(&comparison, report->json);
+  comparison_destroy(&comparison);
+  return ok;
+}
+
 /* All kernels that run here in the smallest box; beyond it the best of each precision, with blocking. */
-static bool bench_size(int size, const struct bench_report *report, struct status *status)
+static bool bench_size(int size, bool smallest, const struct bench_report *report, struct status *status)
 {
   bool runs, best[2] = {true, true};
   const struct sweep_kernel *kernel;
   for (size_t k = 0; (kernel = sweep_kernel_at(k, &runs)); k++) {
-    if (!runs || (size > 128 && !best[kernel->precision])) continue;
-    if (!bench_kernel(kernel, size, size > 128, report, status)) return false;
+    if (!runs || (!smallest && !best[kernel->precision])) continue;
+    if (!bench_kernel(kernel, size, !smallest, report, status)) return false;
     best[kernel->precision] = false;
   }
   return true;
@@ -251,18 +367,18 @@ static bool bench_size(int size, const struct bench_report *report, struct statu
 
 bool bench_sweep(const struct bench_report *report, struct status *status)
 {
-  static const int sizes[] = {128, 1024, 4096};
+  static const int full[] = {128, 1024, 4096}, quick[] = {96, 192, 256};
   const int all = omp_get_max_threads();
   bool ok = true;
   bench_describe_machine(report);
-  printf("million cell updates a second; of plain: part of a plain read-modify-write of the same planes; blocked d: d "
-         "steps a pass\n");
-  printf("%-17s %5s %4s %8s %6s %6s %8s %6s %6s %6s %6s %6s %6s %6s\n", "kernel", "size", "thr", "in place", "plain",
-         "GB/s", "2 arrays", "ratio", "d=1", "2", "4", "8", "16", "32");
-  for (size_t s = 0; ok && s < (report->quick ? 1 : sizeof sizes / sizeof sizes[0]); s++)
+  printf("million cell updates a second; of plain: part of a plain read-modify-write of the same planes; constant: in "
+         "place with the rates of mrt;\nblocked d: d steps a pass\n");
+  printf("%-17s %5s %4s %8s %6s %6s %8s %6s %8s %6s %6s %6s %6s %6s %6s\n", "kernel", "size", "thr", "in place",
+         "plain", "GB/s", "2 arrays", "ratio", "constant", "d=1", "2", "4", "8", "16", "32");
+  for (int s = 0; ok && s < 3; s++)
     for (int threads = 1; ok && threads <= all; threads = threads < all && 2 * threads > all ? all : 2 * threads) {
       omp_set_num_threads(threads);
-      ok = bench_size(sizes[s], report, status);
+      ok = bench_size(report->quick ? quick[s] : full[s], s == 0, report, status);
     }
   omp_set_num_threads(all);
   return ok;

@@ -56,7 +56,7 @@ struct sweep_kernel {
   enum precision precision;
   sweep_row *fluid[2][2];             /* [adaptive rates?][with a force?] */
   sweep_row *discs[FORM_COUNT][2][2]; /* [enum coupling_form][adaptive rates?][with a force?] */
-  sweep_row_between *two_arrays;
+  sweep_row_between *two_arrays[2];   /* [adaptive rates?] */
   gather_row *gather;
   paint_row *paint;
   scan_row *scan;

@@ -175,10 +175,16 @@ ROW(sweep_discs_midpoint_force, FORM_MIDPOINT, false, true)
 ROW(sweep_discs_midpoint_adaptive, FORM_MIDPOINT, true, false)
 ROW(sweep_discs_midpoint_adaptive_force, FORM_MIDPOINT, true, true)
 
-/* The classic kernel, from one array to another: what the in-place one is measured against. */
+/* The classic kernels, from one array to another: what the in-place ones are measured against. */
 static void sweep_two_arrays(void *const from[Q], void *const to[Q], int n, const struct sweep_constants *constants)
 {
   collide_stream(from, to, n, constants, NULL, NULL, FLUID_ALONE, false, false);
+}
+
+static void sweep_two_arrays_adaptive(void *const from[Q], void *const to[Q], int n,
+                                      const struct sweep_constants *constants)
+{
+  collide_stream(from, to, n, constants, NULL, NULL, FLUID_ALONE, true, false);
 }
 
 extern gather_row KERNEL(gather_row);
@@ -195,7 +201,7 @@ const struct sweep_kernel KERNEL(sweep_kernel) = {
                              {sweep_discs_owen_adaptive, sweep_discs_owen_adaptive_force}},
               [FORM_MIDPOINT] = {{sweep_discs_midpoint, sweep_discs_midpoint_force},
                                  {sweep_discs_midpoint_adaptive, sweep_discs_midpoint_adaptive_force}}},
-    .two_arrays = sweep_two_arrays,
+    .two_arrays = {sweep_two_arrays, sweep_two_arrays_adaptive},
     .gather = KERNEL(gather_row),
     .paint = KERNEL(paint_row),
     .scan = KERNEL(scan_row)};
