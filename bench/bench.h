@@ -11,7 +11,7 @@
  * of an object of the benchmark's name. */
 struct bench_report {
   FILE *json;
-  bool quick; /* less of everything: does it run, not how fast */
+  bool quick; /* the same work and verification, with smaller sizes, fewer cases or fewer repetitions */
 };
 
 typedef bool bench_run(const struct bench_report *report, struct status *status);
@@ -28,7 +28,9 @@ bench_run bench_accuracy, bench_contact, bench_drag, bench_occupation, bench_ove
 /* Prints what is measured on, and puts it into the report as its first member. */
 void bench_describe_machine(const struct bench_report *report);
 
-/* All benchmarks; NULL past the last. */
+enum { BENCHES_MOST = 16 };
+
+/* All benchmarks, BENCHES_MOST at most; NULL past the last. */
 const struct bench *bench_at(size_t index);
 
 #endif
