@@ -66,6 +66,22 @@ bool accuracy_advance(struct simulation *simulation, int64_t steps, struct accur
   return ok;
 }
 
+bool accuracy_over_places(accuracy_run_at *run, const struct accuracy_choice *choice, int resolution,
+                          struct accuracy_outcome *outcome, struct status *status)
+{
+  struct accuracy_outcome cost = {0};
+  struct deviations all = {0};
+  for (int k = 0; k < PLACES; k++) {
+    const struct offset offset = place_offset(k);
+    double deviation = NAN;
+    const bool ok = run(choice, resolution, &offset, &deviation, &cost, status);
+    deviations_add(&all, deviation, offset.weight);
+    *outcome = (struct accuracy_outcome){all.error, all.worst, cost.seconds / (k + 1), cost.updates / (k + 1)};
+    if (!ok) return false;
+  }
+  return true;
+}
+
 bool accuracy_field_error(struct simulation *simulation, double *const exact[2], double *error, struct status *status)
 {
   const size_t cells = (size_t)scene_cells(simulation_scene(simulation));
@@ -100,9 +116,17 @@ static void add_series(struct study *study, struct accuracy_choice choice)
   name_choice(study->one, &choice, series->name);
 }
 
+/* The program's defaults. */
+static const struct accuracy_choice usual = {OPERATOR_ADAPTIVE, FORM_MIDPOINT, PRECISION_DOUBLE, AREA_LENS};
+
+static bool is_usual(const struct accuracy_choice *c)
+{
+  return c->operator== usual.operator&& c->form == usual.form && c->precision == usual.precision &&
+      c->area == usual.area;
+}
+
 static void list_choices(struct study *study)
 {
-  const struct accuracy_choice usual = {OPERATOR_ADAPTIVE, FORM_MIDPOINT, PRECISION_DOUBLE, AREA_LENS};
   struct accuracy_choice c = usual;
   study->count = 0;
   for (int area = AREA_LENS; study->one->with_areas && area <= AREA_CELLS; area++) {
@@ -123,9 +147,10 @@ static bool run_series(const struct study *study, void *context, struct series *
 {
   for (int r = 0; r < study->resolutions; r++) {
     struct accuracy_outcome *outcome = &series->outcome[r];
-    if (study->one->run(context, &series->choice, study->one->resolution[r], outcome, status)) continue;
-    if (status->code != DELBM_FAILED) return false;
-    outcome->error = NAN;
+    const bool ok = study->one->run(context, &series->choice, study->one->resolution[r], outcome, status);
+    if (!ok && status->code != DELBM_FAILED) return false;
+    if (!ok) outcome->error = NAN;
+    if (!ok || study->one->places == 0) outcome->worst = outcome->error;
   }
   return true;
 }
@@ -170,14 +195,23 @@ static void find_front(struct study *study)
 static void print_table(const struct study *study)
 {
   const struct accuracy_case *one = study->one;
-  printf("\n%s: %s\n%-28s", one->name, one->error, one->axis);
-  for (int r = 0; r < study->resolutions; r++) printf(" %10d", one->resolution[r]);
+  printf("\n%s: %s\n", one->name, one->error);
+  if (one->places)
+    printf("mean of the absolute error over %d places of the centre within a cell, and the worst\n", one->places);
+  printf("%-28s", one->axis);
+  for (int r = 0; r < study->resolutions; r++) {
+    printf(" %10d", one->resolution[r]);
+    if (one->places) printf(" %8s", "worst");
+  }
   printf(" %7s %9s\n", "order", "seconds");
   for (int s = 0; s < study->count; s++) {
     const struct series *series = &study->series[s];
     printf("%-28s", series->name);
-    for (int r = 0; r < study->resolutions; r++)
-      isnan(series->outcome[r].error) ? printf(" %10s", "diverged") : printf(" %10.3g", series->outcome[r].error);
+    for (int r = 0; r < study->resolutions; r++) {
+      const struct accuracy_outcome *o = &series->outcome[r];
+      isnan(o->error) ? printf(" %10s", "diverged") : printf(" %10.3g", o->error);
+      if (one->places) isnan(o->worst) ? printf(" %8s", "") : printf(" %8.2g", o->worst);
+    }
     isnan(series->order) ? printf(" %7s", "") : printf(" %7.2f", series->order);
     printf(" %9.3g\n", series->outcome[study->resolutions - 1].seconds);
   }
@@ -213,17 +247,32 @@ static void report_study(const struct study *study, bool first, FILE *json)
     const struct series *series = &study->series[s];
     for (int r = 0; r < study->resolutions; r++) {
       const struct accuracy_outcome *o = &series->outcome[r];
-      char error[32] = "null", order[32] = "null";
+      char error[32] = "null", worst[32] = "null", order[32] = "null";
       if (!isnan(o->error)) snprintf(error, sizeof error, "%.6g", o->error);
+      if (!isnan(o->worst)) snprintf(worst, sizeof worst, "%.6g", o->worst);
       if (!isnan(series->order)) snprintf(order, sizeof order, "%.4g", series->order);
       fprintf(json,
               "%s\n{\"case\": \"%s\", \"choice\": \"%s\", \"resolution\": %d, \"error\": %s, \"seconds\": %.4g, "
-              "\"updates\": %.6g, \"order\": %s, \"best_for_time\": %s, \"best_for_updates\": %s}",
+              "\"updates\": %.6g, \"order\": %s, \"best_for_time\": %s, \"best_for_updates\": %s, \"worst\": %s, "
+              "\"places\": %d}",
               first && s == 0 && r == 0 ? "" : ",", study->one->name, series->name, study->one->resolution[r], error,
               o->seconds, o->updates, order, series->cheapest[0][r] ? "true" : "false",
-              series->cheapest[1][r] ? "true" : "false");
+              series->cheapest[1][r] ? "true" : "false", worst, study->one->places ? study->one->places : 1);
     }
   }
+}
+
+static bool verify(const struct study *study, struct status *status)
+{
+  const struct accuracy_case *one = study->one;
+  for (int s = 0; s < study->count; s++) {
+    const struct series *series = &study->series[s];
+    const double error = series->outcome[0].error;
+    if (is_usual(&series->choice) && !(error <= one->bound))
+      return status_fail(status, DELBM_FAILED, "bench accuracy: %s, %s, at %d: an error of %g is beyond %g", one->name,
+                         series->name, one->resolution[0], error, one->bound);
+  }
+  return true;
 }
 
 static bool run_study(struct study *study, bool first, const struct bench_report *report, struct status *status)
@@ -247,7 +296,7 @@ static bool run_study(struct study *study, bool first, const struct bench_report
   print_front(study, 1);
   fflush(stdout);
   if (report->json) report_study(study, first, report->json);
-  return true;
+  return verify(study, status);
 }
 
 bool bench_accuracy(const struct bench_report *report, struct status *status)

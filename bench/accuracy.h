@@ -3,6 +3,7 @@
 #ifndef DELBM_BENCH_ACCURACY_H
 #define DELBM_BENCH_ACCURACY_H
 
+#include "places.h"
 #include "scenes.h"
 #include "sim/simulation.h"
 
@@ -24,10 +25,11 @@ struct accuracy_choice {
   enum contact_area area;
 };
 
-/* Of one run. Time and updates are those of the steps alone. */
+/* Of one run, or of one each at several places of the disc within a cell. */
 struct accuracy_outcome {
-  double error; /* NAN where the run diverged */
-  double seconds, updates;
+  double error;            /* the mean over the places; NAN where a run diverged */
+  double worst;            /* of the places; of one place the error again */
+  double seconds, updates; /* of the steps alone; the mean over the places */
 };
 
 /* `context` is what the case has prepared. */
@@ -42,6 +44,8 @@ struct accuracy_case {
   const char *axis;            /* what the resolution counts */
   int resolution[RESOLUTIONS]; /* ends with 0 if there are fewer */
   int quick;                   /* how many of these a quick run takes */
+  double bound;                /* of the program's defaults at the coarsest resolution: beyond it the benchmark fails */
+  int places;                  /* within a cell over which a run averages; 0: one run has the answer */
   bool with_forms, with_areas; /* else those of the program's defaults; contacts do not depend on the operator */
   accuracy_run *run;
   void *(*prepare)(bool quick, struct status *status); /* what all runs share; NULL: nothing */
@@ -54,6 +58,14 @@ extern const struct accuracy_case accuracy_taylor_green, accuracy_poiseuille, ac
 /* A box as scene_box, with what the choice says. */
 struct scene accuracy_scene(const struct accuracy_choice *choice, int nx, int ny, double viscosity, enum sides sides);
 void accuracy_apply(const struct accuracy_choice *choice, struct scene *scene);
+
+/* Runs a case at one place: the deviation from the answer, its cost added to `cost`. */
+typedef bool accuracy_run_at(const struct accuracy_choice *choice, int resolution, const struct offset *offset,
+                             double *deviation, struct accuracy_outcome *cost, struct status *status);
+
+/* Runs a case at all places. */
+bool accuracy_over_places(accuracy_run_at *run, const struct accuracy_choice *choice, int resolution,
+                          struct accuracy_outcome *outcome, struct status *status);
 
 /* Advances, adding to the cost. */
 bool accuracy_advance(struct simulation *simulation, int64_t steps, struct accuracy_outcome *outcome,

@@ -2,49 +2,99 @@
 #include "accuracy.h"
 
 #include "base/memory.h"
+#include "steady.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-/* Spin over half the shear rate of a torque-free disc in the middle of a square cell of `width`, periodic along the
- * walls, which move. Slow: Re = shear R^2/nu 0.01. */
-static bool shear_spin(const struct accuracy_choice *choice, int radius, int width, double *spin,
-                       struct accuracy_outcome *outcome, struct status *status)
+/* A linear shear that is at rest at height `centre`. */
+struct shear {
+  double rate, centre;
+};
+
+static struct flow_state sheared(const void *context, int x, int y)
 {
-  const double viscosity = 0.1, shear = 0.01 * viscosity / (radius * radius);
-  struct scene scene = accuracy_scene(choice, width, width, viscosity, SIDES_PERIODIC);
+  const struct shear *shear = context;
+  (void)x;
+  return (struct flow_state){
+      .density = 1, .velocity = {shear->rate * (y + 0.5 - shear->centre), 0}, .gradient = {{0, shear->rate}, {0, 0}}};
+}
+
+/* A disc held near the middle of a square cell of `width`, periodic along the walls, which move so that the shear is at
+ * rest at the disc's centre. Slow: Re = shear R^2/nu 0.01. */
+struct sheared_disc {
+  int radius, width;
+  double x, y, viscosity;
+  struct shear shear;
+};
+
+/* The torque on the disc that spins at so many times half the shear rate, over 4 pi mu R^2 and that rate: what it would
+ * gain in spin, if it were alone. */
+static bool shear_torque(const struct sheared_disc *d, const struct accuracy_choice *choice, double spin,
+                         double *torque, struct accuracy_outcome *cost, struct status *status)
+{
+  const int64_t look = (int64_t)(d->width * d->width / (100 * d->viscosity));
+  const double half = d->shear.rate / 2, unit = -half * 4 * M_PI * d->viscosity * d->radius * d->radius;
+  struct steady steady = {.enough = 1e-5};
+  struct scene scene = accuracy_scene(choice, d->width, d->width, d->viscosity, SIDES_PERIODIC);
   struct simulation *simulation = NULL;
-  scene.domain.side[SIDE_BOTTOM] = (struct side){SIDE_WALL, {-shear * width / 2, 0}};
-  scene.domain.side[SIDE_TOP] = (struct side){SIDE_WALL, {shear * width / 2, 0}};
-  scene_add_disc(&scene, radius, 1, width / 2.0, width / 2.0);
-  /* the walls' motion spreads as exp(-4 pi^2 nu t/width^2) */
-  const bool ok = simulation_create(&simulation, &scene, status) &&
-                  accuracy_advance(simulation, (int64_t)(0.3 * width * width / viscosity), outcome, status);
-  if (ok) *spin = -2 * simulation_discs(simulation)->omega[0] / shear;
+  scene.domain.side[SIDE_BOTTOM] = (struct side){SIDE_WALL, {-d->shear.rate * d->y, 0}};
+  scene.domain.side[SIDE_TOP] = (struct side){SIDE_WALL, {d->shear.rate * (d->width - d->y), 0}};
+  struct disc_spec *disc = scene_add_disc(&scene, d->radius, 1, d->x, d->y);
+  disc->motion = DISC_FIXED;
+  disc->spin = -half * spin;
+  bool ok = simulation_create(&simulation, &scene, status), known = false;
+  if (ok) simulation_start(simulation, sheared, &d->shear);
+  while (ok && !known) {
+    ok = accuracy_advance(simulation, look, cost, status);
+    known = ok && steady_look(&steady, spin + simulation_discs(simulation)->torque[0] / unit);
+  }
+  *torque = steady.limit - spin;
   simulation_destroy(simulation);
   scene_clear(&scene);
   return ok;
 }
 
-/* Two widths, 8 and 16 R: what the walls and the disc's images add goes as 1/width^2. */
+/* The spin without torque, over half the shear rate: the torque is linear in the spin. */
+static bool shear_spin(const struct accuracy_choice *choice, int radius, int width, const struct offset *offset,
+                       double *spin, struct accuracy_outcome *cost, struct status *status)
+{
+  struct sheared_disc d = {radius, width, width / 2 + offset->x, width / 2 + offset->y, .viscosity = 0.1};
+  d.shear = (struct shear){0.01 * d.viscosity / (radius * radius), d.y};
+  double at_rest, turning;
+  if (!shear_torque(&d, choice, 0, &at_rest, cost, status) || !shear_torque(&d, choice, 1, &turning, cost, status))
+    return false;
+  *spin = at_rest / (at_rest - turning);
+  return true;
+}
+
+/* Two widths, 6 and 12 R: what the walls and the disc's images add goes as 1/width^2; what is left of them is 1e-4. */
+static bool spin_at(const struct accuracy_choice *choice, int radius, const struct offset *offset, double *deviation,
+                    struct accuracy_outcome *cost, struct status *status)
+{
+  double narrow, wide;
+  if (!shear_spin(choice, radius, 6 * radius, offset, &narrow, cost, status) ||
+      !shear_spin(choice, radius, 12 * radius, offset, &wide, cost, status))
+    return false;
+  *deviation = wide + (wide - narrow) / 3 - 1;
+  return true;
+}
+
 static bool run_spin(void *context, const struct accuracy_choice *choice, int radius, struct accuracy_outcome *outcome,
                      struct status *status)
 {
-  double narrow, wide;
   (void)context;
-  if (!shear_spin(choice, radius, 8 * radius, &narrow, outcome, status) ||
-      !shear_spin(choice, radius, 16 * radius, &wide, outcome, status))
-    return false;
-  outcome->error = fabs(wide + (wide - narrow) / 3 - 1);
-  return true;
+  return accuracy_over_places(spin_at, choice, radius, outcome, status);
 }
 
 const struct accuracy_case accuracy_spin = {
     .name = "spin",
-    .error = "spin of a free disc in shear, with d/W -> 0 from 1/4 and 1/8, over half the shear rate, relative",
+    .error = "spin of a free disc in shear, with d/W -> 0 from 1/3 and 1/6, over half the shear rate, relative",
     .axis = "cells in R",
     .resolution = {2, 4, 8},
-    .quick = 2,
+    .quick = 1,
+    .bound = 0.02,
+    .places = PLACES,
     .with_forms = true,
     .run = run_spin};
 
@@ -55,27 +105,47 @@ static double faxen_drag(double k)
   return 4 * M_PI / (-log(k) - 0.9157 + k2 * (1.7244 + k2 * (-1.7302 + k2 * (2.4056 - 4.5913 * k2))));
 }
 
-/* The disc falls from the middle of a closed box by a few cells, at Re 0.05; the velocity is the mean over the last
- * cell, through which the force varies. */
-static bool run_settling(void *context, const struct accuracy_choice *choice, int radius,
-                         struct accuracy_outcome *outcome, struct status *status)
+/* The disc falls from the middle of a closed box by a few cells, at Re 0.05. Deviations of its velocity at `LEVELS` heights
+ * of the last cell, through which the force varies. */
+enum { LEVELS = 16 };
+
+static bool fall(const struct accuracy_choice *choice, int radius, int width, double deviation[LEVELS],
+                 struct accuracy_outcome *cost, struct status *status)
 {
-  const int width = 8 * radius, height = 6 * width;
   const double viscosity = 0.1, speed = 0.05 * viscosity / (2 * radius), excess = 0.5;
-  const int64_t steady = (int64_t)(0.4 * width * width / viscosity), cell = llround(1 / speed);
+  const int height = 32 * radius;
+  const int64_t steady = (int64_t)(0.6 * width * width / viscosity), level = llround(1 / (LEVELS * speed));
   struct scene scene = accuracy_scene(choice, width, height, viscosity, SIDES_CLOSED);
   struct simulation *simulation = NULL;
-  (void)context;
   scene.fluid.zero_flux = true;
-  scene.particles.gravity[1] = -faxen_drag(0.25) * viscosity * speed / (M_PI * radius * radius * excess);
+  scene.particles.gravity[1] =
+      -faxen_drag(2.0 * radius / width) * viscosity * speed / (M_PI * radius * radius * excess);
   scene_add_disc(&scene, radius, 1 + excess, width / 2.0, height / 2.0 + 0.3);
-  bool ok = simulation_create(&simulation, &scene, status) && accuracy_advance(simulation, steady, outcome, status);
-  const double from = ok ? simulation_discs(simulation)->y[0] : NAN;
-  ok = ok && accuracy_advance(simulation, cell, outcome, status);
-  if (ok) outcome->error = fabs((from - simulation_discs(simulation)->y[0]) / ((double)cell * speed) - 1);
+  bool ok = simulation_create(&simulation, &scene, status) && accuracy_advance(simulation, steady, cost, status);
+  for (int k = 0; ok && k < LEVELS; k++) {
+    const double from = simulation_discs(simulation)->y[0];
+    ok = accuracy_advance(simulation, level, cost, status);
+    deviation[k] = (from - simulation_discs(simulation)->y[0]) / ((double)level * speed) - 1;
+  }
   simulation_destroy(simulation);
   scene_clear(&scene);
   return ok;
+}
+
+/* The disc stands in the middle between the walls, which is between two columns of cells where the width is even and in the
+ * middle of one where it is odd; it falls through all heights within a cell. */
+static bool run_settling(void *context, const struct accuracy_choice *choice, int radius,
+                         struct accuracy_outcome *outcome, struct status *status)
+{
+  struct deviations all = {0};
+  (void)context;
+  for (int odd = 0; odd < 2; odd++) {
+    double deviation[LEVELS];
+    if (!fall(choice, radius, 8 * radius + odd, deviation, outcome, status)) return false;
+    for (int k = 0; k < LEVELS; k++) deviations_add(&all, deviation[k], 1.0 / (2 * LEVELS));
+  }
+  *outcome = (struct accuracy_outcome){all.error, all.worst, outcome->seconds / 2, outcome->updates / 2};
+  return true;
 }
 
 const struct accuracy_case accuracy_settling = {
@@ -83,7 +153,9 @@ const struct accuracy_case accuracy_settling = {
     .error = "velocity of a disc falling between walls 4 diameters apart, Re 0.05, against Faxen 1946, relative",
     .axis = "cells in R",
     .resolution = {2, 4, 8},
-    .quick = 2,
+    .quick = 1,
+    .bound = 0.06,
+    .places = 2 * LEVELS,
     .with_forms = true,
     .run = run_settling};
 
@@ -91,6 +163,7 @@ const struct accuracy_case accuracy_settling = {
 struct passage {
   int radius, size;
   double viscosity, speed;
+  struct offset start; /* of the disc, from the middle of the channel */
 };
 
 static struct flow_state stream(const void *context, int x, int y)
@@ -107,7 +180,7 @@ static bool follow(const struct passage *p, const struct accuracy_choice *choice
   struct scene scene = accuracy_scene(choice, p->size, p->size, p->viscosity, SIDES_PERIODIC);
   const struct side wall = {SIDE_WALL, {driven ? 0 : -p->speed, 0}};
   scene.domain.side[SIDE_BOTTOM] = scene.domain.side[SIDE_TOP] = wall;
-  struct disc_spec *disc = scene_add_disc(&scene, p->radius, 1, 0.5 * p->size + 0.2, 0.5 * p->size + 0.3);
+  struct disc_spec *disc = scene_add_disc(&scene, p->radius, 1, p->size / 2 + p->start.x, p->size / 2 + p->start.y);
   struct simulation *simulation = NULL;
   disc->motion = driven ? DISC_DRIVEN : DISC_FIXED;
   if (driven) disc->velocity[0] = p->speed;
@@ -134,18 +207,25 @@ static double noise(const double *moving, const double *resting, int count)
   return sqrt(squares / count) / fabs(sum / count);
 }
 
+/* The disc starts from the place at which the other one is held. */
+static bool cross_from(const struct accuracy_choice *choice, int radius, const struct offset *offset, double *deviation,
+                       struct accuracy_outcome *cost, struct status *status)
+{
+  const struct passage p = {radius, 10 * radius, 0.05, 0.1 / radius, *offset}; /* Re 4 */
+  const int skip = (int)(p.size * p.size / (20 * p.viscosity)), steps = (int)(4 / p.speed);
+  double *force = memory_allocate(2 * (size_t)steps, sizeof *force, "the forces", status);
+  const bool ok = force && follow(&p, choice, true, skip, steps, force, cost, status) &&
+                  follow(&p, choice, false, skip, steps, force + steps, cost, status);
+  if (ok) *deviation = noise(force, force + steps, steps);
+  free(force);
+  return ok;
+}
+
 static bool run_crossing(void *context, const struct accuracy_choice *choice, int radius,
                          struct accuracy_outcome *outcome, struct status *status)
 {
-  const struct passage p = {radius, 10 * radius, 0.05, 0.1 / radius}; /* Re 4 */
-  const int skip = (int)(p.size * p.size / (20 * p.viscosity)), steps = (int)(4 / p.speed);
-  double *force = memory_allocate(2 * (size_t)steps, sizeof *force, "the forces", status);
   (void)context;
-  const bool ok = force && follow(&p, choice, true, skip, steps, force, outcome, status) &&
-                  follow(&p, choice, false, skip, steps, force + steps, outcome, status);
-  if (ok) outcome->error = noise(force, force + steps, steps);
-  free(force);
-  return ok;
+  return accuracy_over_places(cross_from, choice, radius, outcome, status);
 }
 
 const struct accuracy_case accuracy_crossing = {
@@ -154,6 +234,8 @@ const struct accuracy_case accuracy_crossing = {
         "force on a disc driven across cells at Re 4, against that on a fixed disc in a channel that moves, relative",
     .axis = "cells in R",
     .resolution = {3, 5, 8},
-    .quick = 2,
+    .quick = 1,
+    .bound = 0.012,
+    .places = PLACES,
     .with_forms = true,
     .run = run_crossing};

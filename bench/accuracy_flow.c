@@ -73,6 +73,7 @@ const struct accuracy_case accuracy_taylor_green = {
     .axis = "cells a side",
     .resolution = {16, 32, 64, 128, 256},
     .quick = 3,
+    .bound = 0.03,
     .run = run_taylor_green};
 
 enum { CHANNEL_LENGTH = 4 };
@@ -122,6 +123,7 @@ const struct accuracy_case accuracy_poiseuille = {.name = "poiseuille",
                                                   .axis = "cells across",
                                                   .resolution = {6, 12, 24, 48},
                                                   .quick = 3,
+                                                  .bound = 0.03,
                                                   .run = run_poiseuille};
 
 static const double couette_time = 0.1; /* H^2/nu */
@@ -151,4 +153,5 @@ const struct accuracy_case accuracy_couette = {
     .axis = "cells across",
     .resolution = {10, 20, 40, 80, 160},
     .quick = 3,
+    .bound = 0.004,
     .run = run_couette};

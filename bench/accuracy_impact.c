@@ -104,5 +104,6 @@ const struct accuracy_case accuracy_impact = {
     .axis = "steps in a contact",
     .resolution = {5, 10, 20, 40, 80},
     .quick = 4,
+    .bound = 0.45,
     .with_areas = true,
     .run = run_impact};

@@ -111,6 +111,7 @@ const struct accuracy_case accuracy_shear_layer = {
     .axis = "cells a side",
     .resolution = {32, 64, 128, 256},
     .quick = 3,
+    .bound = 0.25,
     .run = run_shear,
     .prepare = create_reference,
     .finish = destroy_reference};

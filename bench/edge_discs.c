@@ -1,6 +1,7 @@
 /* Single discs at the edge: light and heavy ones, ones smaller than a cell, and ones that are held and spin. */
 #include "edge.h"
 #include "scenes.h"
+#include "square_array.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -100,60 +101,66 @@ static bool map_density(struct edge *edge, struct status *status)
   return true;
 }
 
-/* A fixed disc in a periodic square of 16 cells, off the grid by `offset` cells; K = F/(mu U) of a dilute square array
- * (Hasimoto 1959), off by less than 0.1 % up to a solid fraction of 0.11. */
+/* A fixed disc in a periodic square of 16 cells; K = F/(mu U) of a dilute square array (Hasimoto 1959), off by less than
+ * 0.1 % up to a solid fraction of 0.11. */
+enum { SMALL_BOX = 16, RADII = 9 };
+static const double small_radii[RADII] = {0.5, 0.6, 0.7, 0.8, 0.9, 1, 1.5, 2, 3};
+
 static double dilute_drag(double fraction)
 {
   return 4 * M_PI / (-0.5 * log(fraction) - 0.738 + fraction - 0.887 * fraction * fraction + 2.038 * pow(fraction, 3));
 }
 
-static bool array_drag(struct edge *edge, double radius, double viscosity, enum coupling_form form, double offset,
-                       double *drag, struct status *status)
+/* Relative error of the drag, over places within a cell. */
+static bool small_disc_errors(double radius, double viscosity, enum coupling_form form, struct deviations *all,
+                              struct status *status)
 {
-  enum { SIZE = 16, CELLS = SIZE * SIZE };
-  struct scene scene = scene_box(SIZE, SIZE, viscosity, SIDES_PERIODIC);
-  struct simulation *simulation = NULL;
-  double ux[CELLS], mean = 0;
-  scene.coupling.form = form;
-  scene.fluid.force[0] = 1e-6 * viscosity;
-  scene_add_disc(&scene, radius, 1, 8 + offset, 8 + 0.6 * offset)->motion = DISC_FIXED;
-  const int64_t steps = (int64_t)((edge->report->quick ? 0.2 : 2) * CELLS / viscosity);
-  const bool ok = simulation_create(&simulation, &scene, status) && simulation_advance(simulation, steps, status);
-  if (ok) simulation_fields(simulation, NULL, ux, NULL);
-  for (int k = 0; ok && k < CELLS; k++) mean += ux[k] / CELLS;
-  *drag = scene.fluid.force[0] * CELLS / (viscosity * mean);
-  simulation_destroy(simulation);
-  scene_clear(&scene);
-  return ok;
+  const double exact = dilute_drag(M_PI * radius * radius / (SMALL_BOX * SMALL_BOX));
+  *all = (struct deviations){0};
+  for (int k = 0; k < PLACES; k++) {
+    const struct offset offset = place_offset(k);
+    struct scene scene = scene_box(SMALL_BOX, SMALL_BOX, viscosity, SIDES_PERIODIC);
+    struct accuracy_outcome cost = {0};
+    double drag = NAN;
+    scene.coupling.form = form;
+    scene.fluid.force[0] = 1e-6 * viscosity;
+    scene_add_disc(&scene, radius, 1, SMALL_BOX / 2 + offset.x, SMALL_BOX / 2 + offset.y)->motion = DISC_FIXED;
+    const bool ok = square_array_drag(&scene, &drag, &cost, status);
+    scene_clear(&scene);
+    if (!ok) return false;
+    deviations_add(all, drag / exact - 1, offset.weight);
+  }
+  return true;
 }
 
+/* Two maps of the same runs: the largest error and the mean. A quick run leaves out the smaller viscosity. */
 static bool map_radius(struct edge *edge, struct status *status)
 {
-  static const double radii[] = {0.5, 0.6, 0.7, 0.8, 0.9, 1, 1.5, 2, 3};
-  static const double offsets[] = {0, 0.25, 0.5, 0.75};
-  static const double viscosities[] = {0.01, 0.1};
-  struct map map = {.name = "drag of small discs",
-                    .value = "largest error of the drag of a square array over places on the grid",
-                    .corner = "form, viscosity/radius",
-                    .threshold = 0.05};
-  map_set_columns(&map, radii, sizeof radii / sizeof radii[0]);
-  map_begin(&map, edge->report);
-  for (int k = 0; k < 2 * FORM_COUNT; k++) {
-    const enum coupling_form form = (enum coupling_form)(k % FORM_COUNT);
-    struct place row[MAP_COLUMNS];
-    for (int c = 0; c < map.columns; c++) {
-      double worst = 0, drag;
-      for (int o = 0; o < 4; o++) {
-        if (!array_drag(edge, radii[c], viscosities[k / FORM_COUNT], form, offsets[o], &drag, status)) return false;
-        worst = fmax(worst, fabs(drag / dilute_drag(M_PI * radii[c] * radii[c] / 256) - 1));
-      }
-      row[c] = map_judge(&map, worst, 0);
+  static const double viscosities[] = {0.1, 0.01};
+  static const char *const names[] = {"drag of small discs", "drag of small discs, mean"};
+  static const char *const values[] = {"largest error of the drag of a square array over places within a cell",
+                                       "mean error of the drag of a square array over places within a cell"};
+  const int rows = edge->report->quick ? FORM_COUNT : 2 * FORM_COUNT;
+  struct deviations all[2 * FORM_COUNT][RADII];
+  for (int k = 0; k < rows; k++)
+    for (int c = 0; c < RADII; c++)
+      if (!small_disc_errors(small_radii[c], viscosities[k / FORM_COUNT], (enum coupling_form)(k % FORM_COUNT),
+                             &all[k][c], status))
+        return false;
+  for (int mean = 0; mean < 2; mean++) {
+    struct map map = {
+        .name = names[mean], .value = values[mean], .corner = "form, viscosity/radius", .threshold = 0.05};
+    map_set_columns(&map, small_radii, RADII);
+    map_begin(&map, edge->report);
+    for (int k = 0; k < rows; k++) {
+      struct place row[MAP_COLUMNS];
+      char label[MAP_LABEL];
+      for (int c = 0; c < RADII; c++) row[c] = map_judge(&map, mean ? all[k][c].error : all[k][c].worst, 0);
+      snprintf(label, sizeof label, "%s %g", forms[k % FORM_COUNT], viscosities[k / FORM_COUNT]);
+      map_row(&map, edge->report, label, row, k == 0);
     }
-    char label[MAP_LABEL];
-    snprintf(label, sizeof label, "%s %g", forms[form], viscosities[k / FORM_COUNT]);
-    map_row(&map, edge->report, label, row, k == 0);
+    map_end(edge->report);
   }
-  map_end(edge->report);
   return true;
 }
 

@@ -16,14 +16,15 @@
 #include <math.h>
 #include <omp.h>
 #include <stdlib.h>
+#include <string.h>
 
-enum { REPEATS = 5, PLACES = 16 };
+enum { REPEATS = 5, DISC_PLACES = 16 };
 
 enum way { CELL_BY_CELL, LINE_TABLES, RIM, WAY_COUNT };
 
 /* eps of all cells of one disc, row by row. */
 struct painting {
-  double radius, x[PLACES], y[PLACES];
+  double radius, x[DISC_PLACES], y[DISC_PLACES];
   double *eps;
   size_t cells;
 };
@@ -71,8 +72,8 @@ static double time_disc(struct painting *p, const struct area_kernel *area, enum
   size_t painted = 0;
   const double start = clock_now();
   do {
-    for (int place = 0; place < PLACES; place++) paint_disc(p, area, way, place);
-    painted += PLACES;
+    for (int place = 0; place < DISC_PLACES; place++) paint_disc(p, area, way, place);
+    painted += DISC_PLACES;
   } while (clock_now() - start < seconds);
   return 1e9 * (clock_now() - start) / (double)painted;
 }
@@ -80,7 +81,7 @@ static double time_disc(struct painting *p, const struct area_kernel *area, enum
 /* All ways paint the same, and the areas add up to the disc's. */
 static bool verify(struct painting *p, const struct area_kernel *area, struct status *status)
 {
-  for (int place = 0; place < PLACES; place++)
+  for (int place = 0; place < DISC_PLACES; place++)
     for (enum way way = 0; way < WAY_COUNT; way++) {
       double sum = 0;
       paint_disc(p, area, way, place);
@@ -99,7 +100,7 @@ static bool measure_disc(double radius, const struct bench_report *report, doubl
   const struct area_kernel *area = area_find(NULL);
   struct painting p = {.radius = radius, .eps = malloc((width * width + AREA_PAD) * sizeof *p.eps)};
   gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
-  for (int k = 0; k < PLACES; k++) {
+  for (int k = 0; k < DISC_PLACES; k++) {
     p.x[k] = 1e4 + gsl_ran_flat(random, 0, 1);
     p.y[k] = 1e4 + gsl_ran_flat(random, 0, 1);
   }
@@ -112,6 +113,37 @@ static bool measure_disc(double radius, const struct bench_report *report, doubl
   for (enum way way = 0; ok && way < WAY_COUNT; way++) ns[way] = gsl_stats_median(samples[way], 1, REPEATS);
   gsl_rng_free(random);
   free(p.eps);
+  return ok;
+}
+
+static bool same_row(const struct occupation *a, const struct occupation *b, int y)
+{
+  size_t count, other;
+  const struct run *left = occupation_row(a, y, &count), *right = occupation_row(b, y, &other);
+  if (count != other) return false;
+  for (size_t k = 0; k < count; k++) {
+    const double *l = occupation_band(a, y)->share + left[k].share, *r = occupation_band(b, y)->share + right[k].share;
+    if (left[k].x != right[k].x || left[k].n != right[k].n || left[k].disc != right[k].disc ||
+        left[k].rx != right[k].rx || left[k].ry != right[k].ry || memcmp(l, r, (size_t)left[k].n * sizeof *l) != 0)
+      return false;
+  }
+  return true;
+}
+
+/* What steps of the stage have left is, bit for bit, what one stage lays out anew. */
+static bool verify_stage(const struct occupation *o, const struct scene *scene, const struct discs *d,
+                         struct status *status)
+{
+  struct occupation fresh = {0};
+  struct team team = {0};
+  bool ok = occupation_create(&fresh, scene, d, 0, status);
+  if (ok) stage_occupation(&fresh, d, &team);
+  if (team.failed) *status = team.first;
+  ok = ok && !team.failed;
+  for (int y = 0; ok && y < scene->domain.size[1]; y++)
+    ok = same_row(o, &fresh, y) ||
+         status_fail(status, DELBM_FAILED, "bench occupation: %zu discs: row %d is not as painted anew", d->count, y);
+  occupation_destroy(&fresh);
   return ok;
 }
 
@@ -133,6 +165,7 @@ static bool measure_stage(double radius, int size, bool moving, size_t *discs, d
     if (team.failed) *status = team.first;
     ok = !team.failed;
   }
+  ok = ok && verify_stage(&o, &scene, &d, status);
   if (ok) *ms = gsl_stats_median(samples, 1, 4 * REPEATS);
   *discs = d.count;
   occupation_destroy(&o);

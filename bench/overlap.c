@@ -42,7 +42,23 @@ static struct fit fit_power(double beta, double largest)
   return fit;
 }
 
-static void report_ratios(const struct bench_report *report)
+/* The area is the integral of the chord over the distance; a fitted factor is that of the limit of small overlap. */
+static bool verify_ratio(double beta, const struct fit *fit, double limit, struct status *status)
+{
+  enum { PARTS = 2000 };
+  const double overlap = 0.5;
+  double sum = 0;
+  for (int k = 0; k < PARTS; k++) sum += lens_of_discs(1, beta, 1 + beta - overlap * (k + 0.5) / PARTS).chord / PARTS;
+  const double area = lens_of_discs(1, beta, 1 + beta - overlap).area, error = sum * overlap / area - 1;
+  if (!(fabs(error) < 1e-4))
+    return status_fail(status, DELBM_FAILED, "bench overlap: beta %g: the area is %g off the integral of the chord",
+                       beta, error);
+  return (fabs(fit->factor / limit - 1) < 0.02 && fabs(fit->exponent - 1.5) < 0.01) ||
+         status_fail(status, DELBM_FAILED, "bench overlap: beta %g: A* = %g delta*^%g, expected %g and 1.5", beta,
+                     fit->factor, fit->exponent, limit);
+}
+
+static bool report_ratios(const struct bench_report *report, struct status *status)
 {
   static const double ratios[] = {1, 1.5, 2, 3, 5, 10};
   enum { RATIOS = sizeof ratios / sizeof ratios[0] };
@@ -65,8 +81,10 @@ static void report_ratios(const struct bench_report *report)
     if (report->json)
       fprintf(report->json, "%s{\"beta\": %g, \"factor\": %.17g, \"limit\": %.17g, \"exponent\": %.17g}", b ? ", " : "",
               beta, fit.factor, limit, fit.exponent);
+    if (!verify_ratio(beta, &fit, limit, status)) return false;
   }
   if (report->json) fprintf(report->json, "]");
+  return true;
 }
 
 /* Mean and deviation of the area by cells at one overlap, over random places and directions. */
@@ -130,6 +148,9 @@ static bool report_cells(struct by_cells *c, const struct bench_report *report, 
     double mean[2];
     if (!measure_cells(c, overlap, places, mean, status)) return false;
     printf("%8.1f %12.5f %12.5f %12.5f\n", overlap, area, mean[0], mean[1]);
+    if (k > 0 && !(mean[0] > area && mean[0] < area + radius / 4))
+      return status_fail(status, DELBM_FAILED, "bench overlap: area by cells %g at an overlap of %g, where %g is exact",
+                         mean[0], overlap, area);
     if (report->json)
       fprintf(report->json, "%s{\"overlap\": %.17g, \"lens\": %.17g, \"cells\": %.17g, \"spread\": %.17g}",
               k > -4 ? ", " : "", overlap, area, mean[0], mean[1]);
@@ -141,7 +162,7 @@ static bool report_cells(struct by_cells *c, const struct bench_report *report, 
 bool bench_overlap(const struct bench_report *report, struct status *status)
 {
   struct by_cells cells;
-  report_ratios(report);
+  if (!report_ratios(report, status)) return false;
   const bool ok = by_cells_create(&cells, status) && report_cells(&cells, report, status);
   by_cells_destroy(&cells);
   return ok;

@@ -75,23 +75,28 @@ static bool copy_members(FILE *members, FILE *json, struct status *status)
   return !ferror(members) || status_fail(status, DELBM_IO, "cannot read the figures back: %s", strerror(errno));
 }
 
-/* Runs a benchmark, whose members reach the file when it has ended; of one that failed the file has the message. */
+/* Runs a benchmark; its members reach the file when it has ended. */
+static bool run_kept(const struct bench *bench, bool quick, FILE *json, struct status *status)
+{
+  struct bench_report report = {.quick = quick, .json = tmpfile()};
+  if (!report.json) return status_fail(status, DELBM_IO, "cannot keep the figures: %s", strerror(errno));
+  const bool ok = bench->run(&report, status) && copy_members(report.json, json, status);
+  fclose(report.json);
+  return ok;
+}
+
+/* Of a benchmark that failed the file has the message. */
 static bool run_one(const struct bench *bench, bool quick, FILE *json, bool first, struct status *status)
 {
-  struct bench_report report = {.quick = quick, .json = json ? tmpfile() : NULL};
   printf("%s== %s: %s\n", first ? "" : "\n", bench->name, bench->question);
-  if (json && !report.json) return status_fail(status, DELBM_IO, "cannot keep the figures: %s", strerror(errno));
-  bool ok = bench->run(&report, status);
-  fflush(stdout);
-  if (!json) return ok;
+  if (!json) return bench->run(&(struct bench_report){.quick = quick}, status);
   fprintf(json, "%s  \"%s\": {", first ? "" : ",\n", bench->name);
-  ok = ok && copy_members(report.json, json, status);
+  const bool ok = run_kept(bench, quick, json, status);
   if (!ok) {
     fputs("\"failed\": ", json);
     write_text(status->message, json);
   }
   fputc('}', json);
-  fclose(report.json);
   return ok;
 }
 
@@ -106,6 +111,7 @@ static int run_chosen(const bool chosen[], bool quick, FILE *json)
     struct status status;
     if (!chosen[k]) continue;
     if (!run_one(bench, quick, json, first, &status)) {
+      fflush(stdout);
       const int failed = report_error(&status);
       if (code == DELBM_OK) code = failed;
     }
