@@ -3,11 +3,12 @@
 if (ARGC != 2) { print "usage: gnuplot -c bench/stability.gp REPORT.json PICTURE.png"; exit status 2 }
 set terminal pngcairo size 1400, 1500 font "sans,9" noenhanced
 set output ARG2
-# x, y, verdict (0 completed, 1 inaccurate, 2 diverged), label of the column, label of the row
-places(map) = sprintf("< awk -v map='\"%s\": {' '" . \
+# x, y, verdict (0 completed, 1 inaccurate, 2 diverged), label of the column, label of the row, with tabs between
+places(map) = sprintf("< awk -v OFS='\\t' -v map='\"%s\": {' '" . \
   "index($0, \"\\\"value\\\": \\\"\") { on = index($0, map); y = 0; sub(/.*\"columns\": \\[/, \"\"); sub(/\\].*/, \"\"); gsub(/[\" ]/, \"\"); split($0, column, \",\"); next } " . \
   "on && match($0, /\"[^\"]*\": \\[/) { row = substr($0, RSTART + 1, RLENGTH - 5); n = split($0, place, \"{\"); " . \
-  "for (k = 2; k <= n; k++) printf \"%%d %%d %%d \\\"%%s\\\" \\\"%%s\\\"\\n\", k - 2, y, (place[k] ~ /diverged/ ? 2 : place[k] ~ /inaccurate/ ? 1 : 0), column[k - 1], row; y++ }' '%s'", map, ARG1)
+  "for (k = 2; k <= n; k++) print k - 2, y, (place[k] ~ /diverged/ ? 2 : place[k] ~ /inaccurate/ ? 1 : 0), column[k - 1], row; y++ }' '%s'", map, ARG1)
+set datafile separator tab
 set palette defined (0 "#3a9a5b", 1 "#e8b23a", 2 "#b8322a")
 set cbrange [0:2]
 unset colorbox
