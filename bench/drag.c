@@ -35,7 +35,7 @@ bool square_array_drag(const struct scene *scene, double *drag, struct accuracy_
 {
   const size_t cells = (size_t)scene_cells(scene);
   const double viscosity = scene->fluid.viscosity;
-  const int64_t look = (int64_t)fmax(40, (double)cells / (100 * viscosity));
+  const int64_t look = (int64_t)fmax(250, (double)cells / (100 * viscosity));
   struct steady steady = {.enough = scene->fluid.precision == PRECISION_DOUBLE ? 1e-6 : 1e-5};
   struct simulation *simulation = NULL;
   double *ux = memory_allocate(cells, sizeof *ux, "the velocity", status);
@@ -56,7 +56,9 @@ bool square_array_error(const struct square_array *array, const struct accuracy_
                         double viscosity, const struct offset *offset, double *error, struct accuracy_outcome *cost,
                         struct status *status)
 {
-  struct scene scene = scene_square_array(radius, array->fraction, viscosity, 2e-5 * viscosity * viscosity);
+  /* so small that neither inertia nor the slope of density counts */
+  const double force = viscosity * fmin(1e-6, 2e-5 * viscosity);
+  struct scene scene = scene_square_array(radius, array->fraction, viscosity, force);
   double *position = scene.particles.discs[0].position, drag = NAN;
   accuracy_apply(choice, &scene);
   position[0] = floor(position[0]) + offset->x;

@@ -2,6 +2,7 @@
 #include "accuracy.h"
 #include "spectral.h"
 #include "square_array.h"
+#include "steady.h"
 
 #include <criterion/criterion.h>
 #include <math.h>
@@ -115,42 +116,72 @@ Test(order, is_two_for_a_wall_that_starts_to_move)
   for (int operator= 0; operator<OPERATOR_COUNT; operator++) check_order(&accuracy_couette, operator, 20);
 }
 
-/* K of a square array with discs of R = 5, and how far it is off the exact one. */
-static double drag_of(const struct accuracy_choice *choice, const struct square_array *array, double viscosity)
+/* How far the drag of a square array with discs of R = 5 is off the exact one, with the centre at the first `places` places
+ * within a cell. */
+static struct deviations drag_errors(enum accuracy_operator operator, const struct square_array * array,
+                                     double viscosity, int places)
 {
-  struct scene scene = scene_square_array(5, array->fraction, viscosity, 1e-6 * viscosity);
-  struct accuracy_outcome cost = {0};
-  struct status status;
-  double drag;
-  accuracy_apply(choice, &scene);
-  cr_assert(square_array_drag(&scene, &drag, &cost, &status), "%s", status.message);
-  scene_clear(&scene);
-  return drag;
+  const struct accuracy_choice choice = {.operator= operator, .form = FORM_MIDPOINT };
+  struct deviations all = {0};
+  for (int k = 0; k < places; k++) {
+    const struct offset offset = place_offset(k);
+    struct accuracy_outcome cost = {0};
+    struct status status;
+    double error;
+    cr_assert(square_array_error(array, &choice, 5, viscosity, &offset, &error, &cost, &status), "%s", status.message);
+    deviations_add(&all, error, offset.weight);
+  }
+  return all;
 }
 
-/* The paper's forms and rates do not keep to this (bench/README.md). */
+/* The paper's forms and rates do not keep to this (bench/README.md). Dilute arrays at small viscosity take too long here. */
 Test(drag, of_square_arrays_is_right_by_default_within_2_percent_to_solid_fraction_0_3_and_5_percent_at_0_5)
 {
   static const double viscosities[] = {0.005, 0.02, 0.05, 1.0 / 6};
-  const struct accuracy_choice choice = {.operator= OPERATOR_ADAPTIVE, .form = FORM_MIDPOINT};
   for (int a = 0; a < SQUARE_ARRAYS; a++)
-    for (int v = 0; v < 4; v++) {
-      const double drag = drag_of(&choice, &square_arrays[a], viscosities[v]);
-      cr_expect(fabs(drag / square_arrays[a].drag - 1) < (square_arrays[a].fraction < 0.35 ? 0.02 : 0.05),
-                "solid fraction %g, viscosity %g: K = %g", square_arrays[a].fraction, viscosities[v], drag);
+    for (int v = square_arrays[a].fraction < 0.15; v < 4; v++) {
+      const struct deviations all = drag_errors(OPERATOR_ADAPTIVE, &square_arrays[a], viscosities[v], PLACES);
+      const double bound = square_arrays[a].fraction < 0.35 ? 0.02 : 0.05;
+      cr_expect(fabs(all.mean) < bound && all.worst < 1.25 * bound,
+                "solid fraction %g, viscosity %g: off by %g in the mean over places, %g at worst",
+                square_arrays[a].fraction, viscosities[v], all.mean, all.worst);
     }
 }
 
+/* At a viscosity of 1 with the centre on a corner of cells only: elsewhere the last 3e-5 takes 100,000 steps. */
 Test(drag, of_slow_flow_does_not_depend_on_viscosity_in_the_midpoint_form_with_two_rates)
 {
   static const double viscosities[] = {0.05, 1.0 / 6, 1};
-  const struct accuracy_choice choice = {.operator= OPERATOR_TRT, .form = FORM_MIDPOINT};
-  for (int a = 2; a < SQUARE_ARRAYS; a += 3) {
-    const double expected = drag_of(&choice, &square_arrays[a], 0.02);
+  for (int a = 2; a < SQUARE_ARRAYS; a += 3)
     for (int v = 0; v < 3; v++) {
-      const double drag = drag_of(&choice, &square_arrays[a], viscosities[v]);
-      cr_expect(fabs(drag / expected - 1) < 1e-5, "solid fraction %g, viscosity %g: K = %.9g, not %.9g",
-                square_arrays[a].fraction, viscosities[v], drag, expected);
+      const int places = viscosities[v] < 1 ? PLACES : 1;
+      const struct deviations expected = drag_errors(OPERATOR_TRT, &square_arrays[a], 0.02, places);
+      const struct deviations all = drag_errors(OPERATOR_TRT, &square_arrays[a], viscosities[v], places);
+      cr_expect(fabs(all.mean - expected.mean) < 1e-5 && fabs(all.worst - expected.worst) < 1e-5,
+                "solid fraction %g, viscosity %g: off by %.9g, not %.9g", square_arrays[a].fraction, viscosities[v],
+                all.mean, expected.mean);
     }
+}
+
+Test(places, have_weights_that_add_up_to_1_and_lie_within_half_a_cell)
+{
+  double sum = 0, x = 0, y = 0;
+  for (int k = 0; k < PLACES; k++) {
+    const struct offset offset = place_offset(k);
+    cr_expect(offset.x >= 0 && offset.x <= 0.5 && offset.y >= 0 && offset.y <= 0.5);
+    sum += offset.weight;
+    x += offset.weight * cos(2 * M_PI * offset.x);
+    y += offset.weight * cos(4 * M_PI * offset.y);
   }
+  cr_expect_float_eq(sum, 1, 1e-15);
+  cr_expect(fabs(x) < 1e-15 && fabs(y) < 1e-15, "waves with the period of a cell and half of it have no mean");
+}
+
+Test(steady, the_limit_of_a_decay_is_known_long_before_it_is_reached)
+{
+  struct steady steady = {.enough = 1e-9};
+  int look = 0;
+  while (look < 1000 && !steady_look(&steady, 3 - 2 * exp(-0.1 * look))) look++;
+  cr_expect_float_eq(steady.limit, 3, 1e-8, "%.12g after %d looks", steady.limit, look);
+  cr_expect(look < 50, "%d looks", look);
 }
