@@ -59,7 +59,8 @@ static bool shear_torque(const struct sheared_disc *d, const struct accuracy_cho
 static bool shear_spin(const struct accuracy_choice *choice, int radius, int width, const struct offset *offset,
                        double *spin, struct accuracy_outcome *cost, struct status *status)
 {
-  struct sheared_disc d = {radius, width, width / 2 + offset->x, width / 2 + offset->y, .viscosity = 0.1};
+  const int middle = width / 2;
+  struct sheared_disc d = {radius, width, middle + offset->x, middle + offset->y, .viscosity = 0.1};
   d.shear = (struct shear){0.01 * d.viscosity / (radius * radius), d.y};
   double at_rest, turning;
   if (!shear_torque(&d, choice, 0, &at_rest, cost, status) || !shear_torque(&d, choice, 1, &turning, cost, status))
@@ -180,7 +181,8 @@ static bool follow(const struct passage *p, const struct accuracy_choice *choice
   struct scene scene = accuracy_scene(choice, p->size, p->size, p->viscosity, SIDES_PERIODIC);
   const struct side wall = {SIDE_WALL, {driven ? 0 : -p->speed, 0}};
   scene.domain.side[SIDE_BOTTOM] = scene.domain.side[SIDE_TOP] = wall;
-  struct disc_spec *disc = scene_add_disc(&scene, p->radius, 1, p->size / 2 + p->start.x, p->size / 2 + p->start.y);
+  const int middle = p->size / 2;
+  struct disc_spec *disc = scene_add_disc(&scene, p->radius, 1, middle + p->start.x, middle + p->start.y);
   struct simulation *simulation = NULL;
   disc->motion = driven ? DISC_DRIVEN : DISC_FIXED;
   if (driven) disc->velocity[0] = p->speed;

@@ -103,7 +103,7 @@ static bool map_density(struct edge *edge, struct status *status)
 
 /* A fixed disc in a periodic square of 16 cells; K = F/(mu U) of a dilute square array (Hasimoto 1959), off by less than
  * 0.1 % up to a solid fraction of 0.11. */
-enum { SMALL_BOX = 16, RADII = 9 };
+enum { SMALL_BOX = 16, SMALL_MIDDLE = SMALL_BOX / 2, RADII = 9 };
 static const double small_radii[RADII] = {0.5, 0.6, 0.7, 0.8, 0.9, 1, 1.5, 2, 3};
 
 static double dilute_drag(double fraction)
@@ -124,7 +124,7 @@ static bool small_disc_errors(double radius, double viscosity, enum coupling_for
     double drag = NAN;
     scene.coupling.form = form;
     scene.fluid.force[0] = 1e-6 * viscosity;
-    scene_add_disc(&scene, radius, 1, SMALL_BOX / 2 + offset.x, SMALL_BOX / 2 + offset.y)->motion = DISC_FIXED;
+    scene_add_disc(&scene, radius, 1, SMALL_MIDDLE + offset.x, SMALL_MIDDLE + offset.y)->motion = DISC_FIXED;
     const bool ok = square_array_drag(&scene, &drag, &cost, status);
     scene_clear(&scene);
     if (!ok) return false;

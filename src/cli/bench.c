@@ -20,7 +20,8 @@ static void print_help(void)
 {
   puts("usage: delbm bench [NAME]... [--list] [--json FILE] [--quick]\n"
        "\n"
-       "Measures on this machine, with OMP_NUM_THREADS threads. Without a NAME all benchmarks run: half an hour, or about\n"
+       "Measures on this machine, with OMP_NUM_THREADS threads. Without a NAME all benchmarks run: half an hour, or "
+       "about\n"
        "a minute with --quick. Each verifies what it measures; where that fails the others still run, and the exit\n"
        "code is 1.\n"
        "\n"
