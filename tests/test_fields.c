@@ -231,6 +231,21 @@ Test(fields, are_read_by_h5py)
   cr_expect_eq(shell("%s read.py", interpreter), 0);
 }
 
+/* Origin and spacing are those of the samples' cell centres, z first. */
+Test(fields, have_their_place_and_their_discs_in_the_xdmf_file)
+{
+  cr_assert_eq(shell("$DELBM run flow.yaml --quiet --out a --set run.steps=1 >/dev/null"), 0);
+  cr_expect_eq(shell("grep -q '>0 5.5 10.5</DataItem>' a/fields.xdmf && grep -q '>1 3 3</DataItem>' a/fields.xdmf"), 0);
+  cr_expect_eq(shell("test $(grep -c 'NumberOfElements=\"3\"' a/fields.xdmf) = 2"), 0, "two discs and an image");
+  shell_write("one.yaml", "domain: {size: [40, 30]}\n"
+                          "fluid: {viscosity: 0.1}\n"
+                          "particles: {discs: [{radius: 4, position: [20, 15], fixed: true}]}\n"
+                          "run: {steps: 0}\n"
+                          "output: {fields: {every: 1}}\n");
+  cr_assert_eq(shell("$DELBM run one.yaml --quiet --out b >/dev/null"), 0);
+  cr_expect_eq(shell("test $(grep -c 'NumberOfElements=\"1\"' b/fields.xdmf) = 1"), 0, "one disc");
+}
+
 Test(fields, open_in_paraview)
 {
   shell_write("view.py",

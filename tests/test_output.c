@@ -414,6 +414,23 @@ Test(progress, lines_come_at_the_quarters)
   for (int k = 0; k < 5; k++) assert_holds(text, shares[k]);
 }
 
+/* A run that goes on at step 1000 has not done those steps in no time. */
+Test(progress, speed_is_of_the_steps_since_the_start)
+{
+  char *text, *speed;
+  size_t length;
+  FILE *stream = open_memstream(&text, &length);
+  struct progress progress;
+  progress_start(&progress, PROGRESS_LINES, stream, 1000, 2000, 1e6);
+  usleep(20000);
+  progress_finish(&progress, 1001);
+  fclose(stream);
+  cr_assert((speed = strstr(text, "1001/2000  ")), "%s", text);
+  const double mlups = strtod(speed + strlen("1001/2000  "), NULL); /* at most 1e6 cells in 0.02 s */
+  cr_expect(mlups > 0 && mlups <= 50, "%s", text);
+  free(text);
+}
+
 Test(progress, quiet_says_nothing)
 {
   cr_assert_str_empty(lines_of_progress(PROGRESS_NONE, 10));
@@ -457,6 +474,13 @@ Test(recorder, an_earlier_run_is_removed_and_other_files_are_not)
   cr_assert(replaced);
   for (int k = 0; k < 4; k++) cr_expect_eq(access(in_scratch(old[k]), F_OK), -1, "%s", old[k]);
   for (int k = 0; k < 3; k++) cr_expect_eq(access(in_scratch(foreign[k]), F_OK), 0, "%s", foreign[k]);
+}
+
+Test(recorder, a_folder_that_cannot_be_made_is_refused_with_the_system_s_reason)
+{
+  cr_assert_not(file_make_directory("/proc/no/such/folder", &status));
+  cr_expect_eq(status.code, DELBM_IO);
+  cr_expect_str_eq(status.message, "cannot make folder /proc/no: No such file or directory");
 }
 
 Test(recorder, a_folder_under_a_file_is_an_input_output_error)
