@@ -280,3 +280,23 @@ Test(memory, that_a_run_would_take_is_known_and_too_much_is_refused_by_key)
   cr_expect(strstr(status.message, "particles: the run would take "), "%s", status.message);
   scene_clear(&scene);
 }
+
+Test(fill, displaces_discs_evenly_to_all_sides_by_up_to_the_jitter)
+{
+  struct scene scene = scene_crowd(400, 400, 2, 10, 1.5);
+  double mean[2] = {0, 0}, least = 0, most = 0;
+  cr_assert_eq(scene.particles.count, 1600);
+  for (size_t i = 0; i < 1600; i++) {
+    const size_t place[2] = {i % 40, i / 40};
+    for (int axis = 0; axis < 2; axis++) {
+      const double by = scene.particles.discs[i].position[axis] - 10 * ((double)place[axis] + 0.5);
+      mean[axis] += by / 1600;
+      least = fmin(least, by);
+      most = fmax(most, by);
+    }
+  }
+  /* of a mean the standard deviation is 1.5/sqrt(3 * 1600) = 0.022 */
+  cr_expect(fabs(mean[0]) < 0.09 && fabs(mean[1]) < 0.09, "by (%g, %g) in the mean", mean[0], mean[1]);
+  cr_expect(least >= -1.5 && least < -1.45 && most <= 1.5 && most > 1.45, "from %g to %g", least, most);
+  scene_clear(&scene);
+}
