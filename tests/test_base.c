@@ -13,18 +13,26 @@
 #include <string.h>
 #include <zlib.h>
 
-Test(words, differ_by_the_fewest_letters_to_insert_remove_or_replace)
+Test(words, differ_by_the_fewest_letters_to_insert_remove_or_replace_and_neighbours_to_swap)
 {
   static const struct {
     const char *a, *b;
     size_t distance;
-  } pairs[] = {
-      {"", "", 0},          {"", "abc", 3},    {"wall", "wall", 0},      {"wall", "ball", 1},       {"all", "wall", 1},
-      {"walls", "wall", 1}, {"abc", "xyz", 3}, {"kitten", "sitting", 3}, {"sunday", "saturday", 3}, {"ab", "ba", 2}};
+  } pairs[] = {{"", "", 0},         {"", "abc", 3},           {"wall", "wall", 0},
+               {"wall", "ball", 1}, {"all", "wall", 1},       {"walls", "wall", 1},
+               {"abc", "xyz", 3},   {"kitten", "sitting", 3}, {"sunday", "saturday", 3},
+               {"ab", "ba", 1},     {"stpes", "steps", 1},    {"abcd", "badc", 2}};
   for (size_t k = 0; k < sizeof pairs / sizeof pairs[0]; k++) {
     cr_expect_eq(edit_distance(pairs[k].a, pairs[k].b), pairs[k].distance, "'%s', '%s'", pairs[k].a, pairs[k].b);
     cr_expect_eq(edit_distance(pairs[k].b, pairs[k].a), pairs[k].distance, "'%s', '%s'", pairs[k].b, pairs[k].a);
   }
+}
+
+Test(words, are_near_where_at_most_every_third_letter_differs)
+{
+  cr_expect(words_are_near("run", 1) && !words_are_near("run", 2));
+  cr_expect(words_are_near("viscosty", 2) && !words_are_near("viscosty", 3));
+  cr_expect(words_are_near("", 0) && !words_are_near("nu", 1));
 }
 
 Test(memory, is_zero_and_aligned_even_where_it_was_used_before)
