@@ -257,8 +257,8 @@ static void print_stages(const struct scene *scene, const struct plan *plan)
                               : plan->walls              ? "sides; no pairs: one disc"
                                                          : "left out: nothing can meet");
   printf("  boundary   %s\n", scene_is_periodic(scene, 0) && scene_is_periodic(scene, 1)
-                                  ? "periodic images, every other step"
-                                  : "every other step");
+                                  ? "periodic images, with the sweep of each row"
+                                  : "with the sweep of each row");
   printf("  sweep      every step, %s%s\n", plan->exchange ? "with discs in the rows that have any" : "fluid alone",
          plan->force ? ", with force" : ", no force");
 }
