@@ -4,6 +4,7 @@
 #include "base/threads.h"
 #include "fluid/vorticity.h"
 #include "sim/diagnostics.h"
+#include "solid/area.h"
 #include "solid/occupation.h"
 
 #include <math.h>
@@ -26,37 +27,17 @@ struct sampling {
   const struct populations *populations;
   const struct fluid_force *force;
   const struct occupation *occupation;
+  const struct discs *discs;
   const struct sample_grid *grid;
   const struct sample *sample;
   bool periodic[2];
 };
 
-/* Buffers of one thread, of nx each: density and velocity of a row, ux of the rows beside it, what covers it, how much
- * that gives, and how many discs it is. */
+/* Buffers of one thread, of nx each but the last: density and velocity of a row, ux of the rows beside it, the part that
+ * discs cover, and that of one disc. */
 struct rows {
-  double *rho, *ux, *uy, *below, *above, *covered, *give, *owners;
+  double *rho, *ux, *uy, *below, *above, *covered, *disc;
 };
-
-/* The shares of a cell add up to its weight B: from that, backwards to eps. */
-static void cover_row(const struct occupation *o, int y, const struct rows *rows, int nx)
-{
-  size_t count = 0;
-  const struct run *runs = o ? occupation_row(o, y, &count) : NULL;
-  double *covered = rows->covered, *give = rows->give, *owners = rows->owners;
-  for (int x = 0; x < nx; x++) covered[x] = give[x] = owners[x] = 0;
-  for (const struct run *run = runs; run < runs + count; run++)
-    for (int k = 0; k < run->n; k++) {
-      const int x = run->x + k;
-      const double share = occupation_band(o, y)->share[run->share + (uint32_t)k];
-      covered[x] += share;
-      give[x] = fmax(give[x], o->give[run->disc]);
-      owners[x] += share > 0;
-    }
-  for (int x = 0; count > 0 && x < nx; x++) {
-    const bool between = owners[x] > 1 || occupation_at_side(o, x, y);
-    covered[x] = fmin(1, weight_fraction(occupation_law(o, give[x], between), covered[x]));
-  }
-}
 
 static void sample_row(const struct sampling *s, const struct rows *rows, int row)
 {
@@ -66,7 +47,8 @@ static void sample_row(const struct sampling *s, const struct rows *rows, int ro
   diagnostics_row(p, s->force, y, rows->rho, rows->ux, rows->uy);
   diagnostics_row(p, s->force, v.low, NULL, rows->below, NULL);
   diagnostics_row(p, s->force, v.high, NULL, rows->above, NULL);
-  cover_row(s->occupation, y, rows, p->nx);
+  if (s->occupation && s->sample->occupation)
+    occupation_fractions(s->occupation, s->discs, y, rows->covered, rows->disc);
   for (int k = 0; k < s->grid->count[0]; k++) {
     const int x = s->grid->first[0] + k * s->grid->stride;
     const size_t at = (size_t)row * (size_t)s->grid->count[0] + (size_t)k;
@@ -83,21 +65,28 @@ static void sample_row(const struct sampling *s, const struct rows *rows, int ro
   }
 }
 
-bool sample_take(const struct populations *p, const bool periodic[2], const struct fluid_force *force,
-                 const struct occupation *occupation, const struct sample_grid *grid, const struct sample *sample,
-                 struct status *status)
+/* Room for the cells of a row of any disc (occupation_fractions). */
+static size_t widest_row(const struct discs *discs)
 {
-  enum { BUFFERS = 8 };
-  const struct sampling sampling = {p, force, occupation, grid, sample, {periodic[0], periodic[1]}};
+  double radius = 0;
+  for (size_t i = 0; i < discs->count; i++) radius = fmax(radius, discs->radius[i]);
+  return (size_t)ceil(2 * radius) + 2 + AREA_PAD;
+}
+
+bool sample_take(const struct populations *p, const bool periodic[2], const struct fluid_force *force,
+                 const struct occupation *occupation, const struct discs *discs, const struct sample_grid *grid,
+                 const struct sample *sample, struct status *status)
+{
+  enum { ROWS = 6 };
+  const struct sampling sampling = {p, force, occupation, discs, grid, sample, {periodic[0], periodic[1]}};
   const int threads = threads_for((int64_t)p->nx * p->ny);
-  const size_t nx = (size_t)p->nx;
-  double *buffers = memory_allocate((size_t)threads * BUFFERS, nx * sizeof *buffers, "rows of fields", status);
+  const size_t nx = (size_t)p->nx, each = ROWS * nx + (occupation ? widest_row(discs) : 0);
+  double *buffers = memory_allocate((size_t)threads, each * sizeof *buffers, "rows of fields", status);
   if (!buffers) return false;
 #pragma omp parallel num_threads(threads)
   {
-    double *own = buffers + (size_t)omp_get_thread_num() * BUFFERS * nx;
-    const struct rows rows = {own,          own + nx,     own + 2 * nx, own + 3 * nx,
-                              own + 4 * nx, own + 5 * nx, own + 6 * nx, own + 7 * nx};
+    double *own = buffers + (size_t)omp_get_thread_num() * each;
+    const struct rows rows = {own, own + nx, own + 2 * nx, own + 3 * nx, own + 4 * nx, own + 5 * nx, own + 6 * nx};
 #pragma omp for schedule(static)
     for (int row = 0; row < grid->count[1]; row++) sample_row(&sampling, &rows, row);
   }

@@ -31,11 +31,12 @@ static inline size_t sample_points(const struct sample_grid *grid)
 struct populations;
 struct fluid_force;
 struct occupation;
+struct discs;
 
-/* Outside of parallel regions. `periodic`: the sides of each axis. `occupation` is NULL in a scene without discs. Fails only
- * for want of memory. */
+/* Outside of parallel regions. `periodic`: the sides of each axis. `occupation` is NULL in a scene without discs; else it is
+ * that of `discs`. Fails only for want of memory. */
 bool sample_take(const struct populations *populations, const bool periodic[2], const struct fluid_force *force,
-                 const struct occupation *occupation, const struct sample_grid *grid, const struct sample *sample,
-                 struct status *status);
+                 const struct occupation *occupation, const struct discs *discs, const struct sample_grid *grid,
+                 const struct sample *sample, struct status *status);
 
 #endif

@@ -443,7 +443,7 @@ bool simulation_sample(struct simulation *s, const struct sample_grid *grid, con
 {
   const struct fluid_force force = flow_force(&s->flow);
   const bool periodic[2] = {scene_is_periodic(s->scene, 0), scene_is_periodic(s->scene, 1)};
-  return sample_take(&s->flow.populations, periodic, &force, simulation_occupation(s), grid, sample, status);
+  return sample_take(&s->flow.populations, periodic, &force, simulation_occupation(s), &s->discs, grid, sample, status);
 }
 
 /* Change of the conserved momentum that body forces do not explain; NAN where something else exchanges momentum. */

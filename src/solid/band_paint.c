@@ -197,12 +197,12 @@ static bool make_room(struct occupation *o, int index, const struct discs *discs
  * overwritten by the next. */
 static void lay_out_run(const struct occupation *o, const struct run *run, int y, const double *eps, double *share)
 {
-  const double give = o->give[run->disc];
+  const double damping = o->damping[run->disc];
   const int last = run->n - 1;
-  o->area->weights(eps, run->n, occupation_law(o, give, occupation_row_at_side(o, y)), share);
+  o->area->weights(eps, run->n, occupation_law(o, damping, occupation_row_at_side(o, y)), share);
   if (o->periodic[0] || (run->x > 0 && run->x + last < o->size[0] - 1)) return;
-  if (occupation_at_side(o, run->x, y)) share[0] = weight_of(occupation_law(o, give, true), eps[0]);
-  if (occupation_at_side(o, run->x + last, y)) share[last] = weight_of(occupation_law(o, give, true), eps[last]);
+  if (occupation_at_side(o, run->x, y)) share[0] = weight_of(occupation_law(o, damping, true), eps[0]);
+  if (occupation_at_side(o, run->x + last, y)) share[last] = weight_of(occupation_law(o, damping, true), eps[last]);
 }
 
 static bool lay_out_shares(struct occupation *o, int index, const struct band_draft *draft, size_t cells,

@@ -27,16 +27,16 @@ static double fraction(const struct encounter *e, size_t r, int x)
 /* Shares a cell among its owners, if it has more than one: the first of the encounter, and some of those after it. */
 static void share_cell(struct occupation *o, struct band *band, const struct encounter *e, int x)
 {
-  double total = 0, give = 0;
+  double total = 0, damping = 0;
   size_t owners = 0, end = e->first;
   for (; end < e->count && e->candidates[end].reach_first <= x; end++) {
     if (!covers(&e->row[end], x)) continue;
     total += fraction(e, end, x);
-    give = fmax(give, o->give[e->row[end].disc]);
+    damping = fmax(damping, o->damping[e->row[end].disc]);
     owners += fraction(e, end, x) > 0;
   }
   if (owners < 2) return;
-  const double weight = weight_of(occupation_law(o, give, true), fmin(1, total)) / total;
+  const double weight = weight_of(occupation_law(o, damping, true), fmin(1, total)) / total;
   for (size_t r = e->first; r < end; r++)
     if (covers(&e->row[r], x)) band->share[e->row[r].share + (size_t)(x - e->row[r].x)] = fraction(e, r, x) * weight;
   band->shared_cells++;

@@ -38,7 +38,7 @@ static bool allocate(struct occupation *o, size_t rows, struct status *status)
   const size_t n = o->discs, bands = (size_t)o->band_count;
   return (o->x = memory_allocate(n, sizeof *o->x, what, status)) &&
          (o->y = memory_allocate(n, sizeof *o->y, what, status)) &&
-         (o->give = memory_allocate(n, sizeof *o->give, what, status)) &&
+         (o->damping = memory_allocate(n, sizeof *o->damping, what, status)) &&
          (o->column = memory_allocate(n, sizeof *o->column, what, status)) &&
          (o->row = memory_allocate(n, sizeof *o->row, what, status)) &&
          (o->rows = memory_allocate(n, sizeof *o->rows, what, status)) &&
@@ -96,7 +96,7 @@ void occupation_destroy(struct occupation *o)
     free(o->drafts[t].candidates);
     free(o->drafts[t].eps);
   }
-  void *const arrays[] = {o->x,          o->y,          o->give,     o->column,    o->row,     o->rows,
+  void *const arrays[] = {o->x,          o->y,          o->damping,  o->column,    o->row,     o->rows,
                           o->moved,      o->was_row,    o->was_rows, o->first_row, o->place,   o->order,
                           o->band_start, o->band_discs, o->stale,    o->bands,     o->batches, o->drafts};
   for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; k++) free(arrays[k]);
@@ -107,14 +107,14 @@ void occupation_destroy(struct occupation *o)
 static void settle(struct occupation *o, const struct discs *discs, size_t i)
 {
   const double radius = discs->radius[i], x = discs->x[i], y = discs->y[i];
-  const double give = weight_give(o->form, discs->motion[i], radius, discs->omega[i]);
-  o->moved[i] = !(o->painted && o->x[i] == x && o->y[i] == y && o->give[i] == give);
+  const double damping = weight_damping(o->form, o->viscosity, radius * discs->omega[i]);
+  o->moved[i] = !(o->painted && o->x[i] == x && o->y[i] == y && o->damping[i] == damping);
   if (!o->moved[i]) return;
   o->was_row[i] = o->row[i];
   o->was_rows[i] = o->rows[i];
   o->x[i] = x;
   o->y[i] = y;
-  o->give[i] = give;
+  o->damping[i] = damping;
   o->column[i] = (int)floor(x - radius);
   o->row[i] = (int)floor(y - radius);
   o->rows[i] = (int)ceil(y + radius) - o->row[i];
@@ -269,4 +269,26 @@ bool stage_occupation(struct occupation *o, const struct discs *discs, struct te
     team_decide(team, TEAM_PAINTED);
   }
   return !team->stop[TEAM_PAINTED];
+}
+
+/* Adds the areas of a run of row y, which belongs to a row of its disc before the box wraps or cuts it. */
+static void add_fractions(const struct occupation *o, const struct discs *discs, const struct run *run, double *eps,
+                          double *scratch)
+{
+  const double radius = discs->radius[run->disc], x = o->x[run->disc], y = o->y[run->disc];
+  const int row = (int)lround(run->ry + y - 0.5), column = (int)lround(run->rx + x - 0.5);
+  struct area_extents e;
+  o->area->extents(radius, x, y, row, 1, &e);
+  o->area->rows(radius, x, y, row, 0, 1, &e, scratch);
+  const double *from = scratch + (column - o->column[run->disc] - e.first[0]);
+  for (int k = 0; k < run->n; k++) eps[run->x + k] = fmin(1, eps[run->x + k] + from[k]);
+}
+
+void occupation_fractions(const struct occupation *o, const struct discs *discs, int y, double *eps, double *scratch)
+{
+  size_t count;
+  const struct run *runs = occupation_row(o, y, &count);
+  memset(eps, 0, (size_t)o->size[0] * sizeof *eps);
+  for (size_t r = 0; r < count; r++)
+    if (runs[r].n > 0) add_fractions(o, discs, &runs[r], eps, scratch);
 }

@@ -80,7 +80,7 @@ struct occupation {
   size_t discs;
   bool painted;                /* at least once */
   double *x, *y;               /* centre of each disc when it was painted */
-  double *give;                /* and its give (weight.h) */
+  double *damping;             /* and the damping in its cells (weight.h) */
   int32_t *column;             /* of its leftmost cell, before wrapping */
   int32_t *row, *rows;         /* its lowest cell, and how many rows it covers */
   uint8_t *moved;              /* since it was last painted */
@@ -140,12 +140,17 @@ static inline bool occupation_at_side(const struct occupation *o, int x, int y)
   return (!o->periodic[0] && (x == 0 || x == o->size[0] - 1)) || occupation_row_at_side(o, y);
 }
 
-/* Of cells whose owners give by at most this; `between`: a disc and another, or a side. */
-static inline struct weight_law occupation_law(const struct occupation *o, double give, bool between)
+/* Of cells with at most this damping in their owners; `between`: a disc and another, or a side. */
+static inline struct weight_law occupation_law(const struct occupation *o, double damping, bool between)
 {
-  const double least = between ? weight_give_between(o->form) : 0;
-  return weight_law(o->form, o->viscosity, give > least ? give : least);
+  const double least = between ? weight_damping_between(o->form) : 0;
+  return weight_law(o->form, o->viscosity, damping > least ? damping : least);
 }
+
+/* The part of each cell of row y that discs cover, min(1, sum eps_p), for all columns. `scratch` has room for the cells of
+ * a row of any disc and AREA_PAD more. */
+void occupation_fractions(const struct occupation *occupation, const struct discs *discs, int y, double *eps,
+                          double *scratch);
 
 /* The sums of one piece of the disc's row k, and that row before wrapping; NULL where nothing of it lies in the box. */
 static inline const struct moment_sums *occupation_sums(const struct occupation *o, size_t disc, int k, int piece,
