@@ -264,6 +264,43 @@ Test(motion, a_settling_crowd_in_a_closed_box_sinks_steadily_without_ringing)
   scene_clear(&scene);
 }
 
+/* Two discs that share cells from the start, one of them moving; mirrored in x. */
+static struct simulation *shared_from_the_start(struct scene *scene, enum coupling_form form, double force, bool mirror)
+{
+  *scene = scene_box(40, 40, 0.1, SIDES_PERIODIC);
+  scene->coupling.form = form;
+  scene->fluid.force[1] = force;
+  struct disc_spec *disc = scene_add_disc(scene, 2, 2, mirror ? 21.5 : 18.5, 20.5);
+  disc->velocity[0] = mirror ? -0.05 : 0.05;
+  disc->velocity[1] = 0.03;
+  disc->spin = mirror ? 0.01 : -0.01;
+  scene_add_disc(scene, 2, 2, mirror ? 18.7 : 21.3, 23.6);
+  return start(scene);
+}
+
+Test(motion, cells_shared_at_the_start_favour_neither_owner_so_that_mirror_images_agree)
+{
+  for (int form = 0; form < FORM_COUNT; form++)
+    for (int forced = 0; forced < 2; forced++) {
+      struct scene scenes[2];
+      struct simulation *simulations[2];
+      for (int k = 0; k < 2; k++) {
+        simulations[k] = shared_from_the_start(&scenes[k], (enum coupling_form)form, forced ? 1e-30 : 0, k == 1);
+        advance(simulations[k], 40);
+      }
+      const struct discs *a = simulation_discs(simulations[0]), *b = simulation_discs(simulations[1]);
+      for (size_t i = 0; i < 2; i++) {
+        cr_expect_float_eq(a->x[i], 40 - b->x[i], 1e-12, "form %d, force %d, disc %zu", form, forced, i);
+        cr_expect_float_eq(a->y[i], b->y[i], 1e-12, "form %d, force %d, disc %zu", form, forced, i);
+        cr_expect_float_eq(a->omega[i], -b->omega[i], 1e-13, "form %d, force %d, disc %zu", form, forced, i);
+      }
+      for (int k = 0; k < 2; k++) {
+        simulation_destroy(simulations[k]);
+        scene_clear(&scenes[k]);
+      }
+    }
+}
+
 Test(stability, the_implicit_solve_is_stable_at_any_density_ratio, .timeout = 100 * SLOWNESS)
 {
   static const double ratios[] = {0.05, 0.3, 0.8, 1.0001, 1.01, 10, 100};

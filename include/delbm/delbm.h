@@ -93,7 +93,8 @@ DELBM_API enum delbm_code delbm_read_discs(const struct delbm_simulation *simula
                                            struct delbm_disc_state *states, struct delbm_status *status);
 
 /* Sets position, velocity, angle and spin of those discs, all or, on failure, none; forces are not looked at. The fluid
- * stays as it is: a disc that jumps finds the fluid of its new place in it. The centre must lie in the box, |velocity|
+ * stays as it is: a disc that jumps finds the fluid of its new place in it, and takes it along within some hundred steps
+ * (coupling.form midpoint, the default; the others have no damping inside discs). The centre must lie in the box, |velocity|
  * + |spin| radius be at most 0.3, and a fixed disc have no velocity. */
 DELBM_API enum delbm_code delbm_write_discs(struct delbm_simulation *simulation, size_t first, size_t count,
                                             const struct delbm_disc_state *states, struct delbm_status *status);
@@ -124,7 +125,9 @@ DELBM_API enum delbm_code delbm_read_field(struct delbm_simulation *simulation, 
                                            struct delbm_status *status);
 
 /* Sets the fluid of every cell to equilibrium at this density and velocity, arrays laid out as above. Densities must lie
- * above 0, speeds at most at 0.3. Gradients that the flow has are left to build up in the first few steps. */
+ * above 0, speeds at most at 0.3. Gradients that the flow has are left to build up in the first few steps. A cell under
+ * discs takes (1 - B) of this velocity and B of the discs', with B the weight of its occupation: 1 or nearly so where it is
+ * covered wholly, so that the fluid inside a disc moves with it. */
 DELBM_API enum delbm_code delbm_write_fluid(struct delbm_simulation *simulation, const double *density,
                                             const double *velocity_x, const double *velocity_y,
                                             struct delbm_status *status);

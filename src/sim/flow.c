@@ -18,7 +18,7 @@ bool flow_create(struct flow *f, const struct scene *scene, const struct plan *p
   if (!f->kernel) return false;
   if (!populations_create(&f->populations, nx, ny, scene_is_periodic(scene, 1), scene->fluid.precision, status))
     return false;
-  if (!boundary_create(&f->boundary, scene->domain.side, nx, ny, status)) return false;
+  if (!boundary_create(&f->boundary, scene->domain.side, nx, ny, status) || !flow_prepare(f, 1, status)) return false;
   if (!f->force) return true;
   f->row_momentum = memory_allocate((size_t)ny, sizeof *f->row_momentum, "the rows' momentum", status);
   return f->row_momentum != NULL;
@@ -66,52 +66,73 @@ static struct flow_state at_rest(const void *context, int x, int y)
   return (struct flow_state){.density = 1};
 }
 
-/* The state with the part `b` of it moving as a rigid body. */
-static struct flow_state mixed(struct flow_state state, double b, const double velocity[2])
+/* What a caller writes, row by row from the bottom. */
+struct flow_arrays {
+  const double *density, *ux, *uy;
+  int nx;
+};
+
+static struct flow_state at_arrays(const void *context, int x, int y)
+{
+  const struct flow_arrays *arrays = context;
+  const size_t at = (size_t)y * (size_t)arrays->nx + (size_t)x;
+  return (struct flow_state){.density = arrays->density[at], .velocity = {arrays->ux[at], arrays->uy[at]}};
+}
+
+static double cover_at(const struct flow *f, const void *row, int x)
+{
+  return f->kernel->precision == PRECISION_DOUBLE ? ((const double *)row)[x] : (double)((const float *)row)[x];
+}
+
+/* Weight B of the discs in a cell, and sum over owners of w_p B v_p. */
+struct covered {
+  double b, bv[2];
+};
+
+/* (1 - B) of the state, and B of the discs' motion: that of a rigid body is without stress. */
+static struct flow_state mixed(struct flow_state state, const struct covered *c)
 {
   for (int axis = 0; axis < 2; axis++) {
-    state.velocity[axis] = (1 - b) * state.velocity[axis] + b * velocity[axis];
-    for (int k = 0; k < 2; k++) state.gradient[axis][k] *= 1 - b;
+    state.velocity[axis] = (1 - c->b) * state.velocity[axis] + c->bv[axis];
+    for (int k = 0; k < 2; k++) state.gradient[axis][k] *= 1 - c->b;
   }
   return state;
 }
 
-void flow_start(struct flow *f, flow_initial *initial, const void *context, const struct occupation *o,
-                const struct discs *discs)
+/* Sets all cells of row y, or only those in which discs move. */
+static void set_row(struct flow *f, flow_initial *initial, const void *context, bool all, int y,
+                    const struct sweep_discs *discs)
+{
+  const int nx = f->populations.nx;
+  const struct row_cover *row = f->covers ? &f->covers[0].row : NULL;
+  size_t count = 0;
+  const struct run *runs = discs->now ? occupation_row(discs->now, y, &count) : NULL;
+  if (count > 0)
+    f->kernel->paint(row, nx, runs, count, occupation_band(discs->now, y)->share, discs->exchange->surface);
+  for (int x = 0; (all || count > 0) && x < nx; x++) {
+    struct covered covered = {0};
+    if (count > 0)
+      covered = (struct covered){cover_at(f, row->b, x), {cover_at(f, row->bvx, x), cover_at(f, row->bvy, x)}};
+    if (!all && covered.bv[0] == 0 && covered.bv[1] == 0) continue;
+    const struct flow_state state = mixed(initial(context, x, y), &covered);
+    set_state(f, x, y, &state);
+  }
+}
+
+void flow_start(struct flow *f, flow_initial *initial, const void *context, const struct sweep_discs *discs)
 {
   /* populations begin as fluid at rest */
-  const bool write = initial || f->constants.force[0] != 0 || f->constants.force[1] != 0;
-  if (!initial) initial = at_rest;
-  for (int y = 0; y < f->populations.ny; y++) {
-    for (int x = 0; write && x < f->populations.nx; x++) {
-      const struct flow_state state = initial(context, x, y);
-      set_state(f, x, y, &state);
-    }
-    size_t count = 0;
-    const struct run *runs = o ? occupation_row(o, y, &count) : NULL;
-    for (size_t r = 0; r < count; r++) {
-      const size_t disc = runs[r].disc;
-      for (int k = 0; k < runs[r].n; k++) {
-        const double b = occupation_band(o, y)->share[runs[r].share + (size_t)k], omega = discs->omega[disc];
-        const double v[2] = {discs->vx[disc] - omega * runs[r].ry, discs->vy[disc] + omega * (runs[r].rx + k)};
-        const struct flow_state state = mixed(initial(context, runs[r].x + k, y), b, v);
-        if (write || v[0] != 0 || v[1] != 0) set_state(f, runs[r].x + k, y, &state);
-      }
-    }
-  }
+  const bool all = initial || f->constants.force[0] != 0 || f->constants.force[1] != 0;
+  for (int y = 0; y < f->populations.ny; y++) set_row(f, initial ? initial : at_rest, context, all, y, discs);
   boundary_reset(&f->boundary, &f->populations);
 }
 
-void flow_set(struct flow *f, const double *density, const double *ux, const double *uy)
+void flow_set(struct flow *f, const double *density, const double *ux, const double *uy,
+              const struct sweep_discs *discs)
 {
-  const int nx = f->populations.nx;
+  const struct flow_arrays arrays = {density, ux, uy, f->populations.nx};
   f->populations.parity = 0; /* the one in which no cell reads ghosts */
-  for (int y = 0; y < f->populations.ny; y++)
-    for (int x = 0; x < nx; x++) {
-      const size_t at = (size_t)y * (size_t)nx + (size_t)x;
-      const struct flow_state state = {.density = density[at], .velocity = {ux[at], uy[at]}};
-      set_state(f, x, y, &state);
-    }
+  for (int y = 0; y < f->populations.ny; y++) set_row(f, at_arrays, &arrays, true, y, discs);
   boundary_reset(&f->boundary, &f->populations);
 }
 

@@ -26,14 +26,22 @@ struct flow {
 bool flow_create(struct flow *flow, const struct scene *scene, const struct plan *plan, struct status *status);
 void flow_destroy(struct flow *flow);
 
-/* The initial state: (j + F/2)/rho and the viscous stress as `initial` has them, or with NULL fluid at rest; inside
- * discs moving with them. Fluid that started out of step with its disc would be reflected to and fro about its velocity,
- * for ever in the owen form. */
-void flow_start(struct flow *flow, flow_initial *initial, const void *context, const struct occupation *occupation,
-                const struct discs *discs);
+/* Where discs are in a sweep, and where they will be after it; all NULL in a scene without discs. */
+struct sweep_discs {
+  const struct occupation *now;
+  const struct exchange *exchange; /* with the velocities of the discs' surfaces */
+  struct occupation *next;         /* takes the sums of the next exchange; may be the same as `now` */
+};
 
-/* Equilibrium at the density and velocity of each cell, arrays of nx * ny, row by row from the bottom. */
-void flow_set(struct flow *flow, const double *density, const double *ux, const double *uy);
+/* The initial state: (j + F/2)/rho and the viscous stress as `initial` has them, or with NULL fluid at rest; in cells under
+ * discs (1 - B) of that and B of the discs' motion, w_p B of each owner's (22). Fluid that starts out of step with its disc
+ * is reflected to and fro about its velocity, in the owen form for ever. */
+void flow_start(struct flow *flow, flow_initial *initial, const void *context, const struct sweep_discs *discs);
+
+/* Equilibrium at the density and velocity of each cell, arrays of nx * ny, row by row from the bottom; under discs as
+ * above. */
+void flow_set(struct flow *flow, const double *density, const double *ux, const double *uy,
+              const struct sweep_discs *discs);
 
 /* Saves or restores the fluid and the uniform force of the coming step. */
 bool flow_store(struct flow *flow, struct store *store, struct status *status);
@@ -48,12 +56,6 @@ static inline struct fluid_force flow_force(const struct flow *flow)
   return (struct fluid_force){{c->force[0], c->force[1]}, {c->uniform[0], c->uniform[1]}};
 }
 
-/* Where discs are in a sweep, and where they will be after it; all NULL in a scene without discs. */
-struct sweep_discs {
-  const struct occupation *now;
-  const struct exchange *exchange; /* with the velocities of the discs' surfaces */
-  struct occupation *next;         /* takes the sums of the next exchange; may be the same as `now` */
-};
 
 /* Rows first .. end - 1; those beyond a periodic side are counted on. */
 struct rows {

@@ -82,9 +82,20 @@ static void take_first_sums(struct simulation *s)
   stage_first_sums(&s->flow, present(s));
 }
 
+/* The discs as they are now, for what is written over the fluid. */
+static struct sweep_discs discs_between_steps(struct simulation *s)
+{
+  const struct discs *d = &s->discs;
+  if (!s->plan.exchange) return (struct sweep_discs){0};
+  for (size_t i = 0; i < d->count; i++)
+    s->exchange.surface[i] = (struct surface_velocity){d->vx[i], d->vy[i], d->omega[i]};
+  return (struct sweep_discs){.now = present(s), .exchange = &s->exchange};
+}
+
 void simulation_start(struct simulation *s, flow_initial *initial, const void *context)
 {
-  flow_start(&s->flow, initial, context, s->plan.exchange ? present(s) : NULL, &s->discs);
+  const struct sweep_discs discs = discs_between_steps(s);
+  flow_start(&s->flow, initial, context, &discs);
   take_first_sums(s);
   conserved_momentum(s, s->initial_momentum);
 }
@@ -404,7 +415,8 @@ bool simulation_restore(struct simulation *s, struct store *store, struct status
 
 void simulation_set_fluid(struct simulation *s, const double *density, const double *ux, const double *uy)
 {
-  flow_set(&s->flow, density, ux, uy);
+  const struct sweep_discs discs = discs_between_steps(s);
+  flow_set(&s->flow, density, ux, uy, &discs);
 }
 
 const char *simulation_kernel(const struct simulation *s)
