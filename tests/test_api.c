@@ -132,6 +132,40 @@ Test(api, discs_written_back_as_they_were_change_nothing)
   delbm_close(b);
 }
 
+/* Opens a box of 60 x 60 cells with these discs, and returns what is said against them. */
+static enum delbm_code opening(const char *discs, struct delbm_status *status)
+{
+  char text[512];
+  struct delbm_simulation *s;
+  snprintf(text, sizeof text,
+           "{domain: {size: [60, 60]}, fluid: {viscosity: 0.05}, particles: {density: 50, discs: [%s]}}", discs);
+  const enum delbm_code code = delbm_open_text(&s, text, NULL, 0, status);
+  delbm_close(s);
+  return code;
+}
+
+Test(api, discs_that_start_too_deep_in_a_side_or_in_another_or_run_too_deep_into_a_side_are_refused_with_the_depth)
+{
+  static const struct {
+    const char *discs, *said; /* NULL: nothing */
+  } cases[] = {{"{radius: 10, position: [30, 6.1]}", NULL},
+               {"{radius: 10, position: [30, 5.9]}", "not 4.1 beyond the bottom one"},
+               {"{radius: 10, position: [55, 30]}", "not 5 beyond the right one"},
+               {"{radius: 10, position: [55, 30], fixed: true}", NULL},
+               {"{radius: 8, position: [30, 30]}, {radius: 9, position: [30, 39.1]}", NULL},
+               {"{radius: 8, position: [30, 30]}, {radius: 9, position: [30, 38.9]}", "not 8.1 within disc 1"},
+               {"{radius: 8, position: [30, 30], fixed: true}, {radius: 9, position: [30, 32], fixed: true}", NULL},
+               {"{radius: 10, position: [30, 12], velocity: [0, -0.08]}", "cells beyond the bottom side, not 9."},
+               {"{radius: 10, position: [30, 12], velocity: [0, 0.005]}", NULL},
+               {"{radius: 10, position: [30, 12], velocity: [0, -0.005]}", NULL}};
+  for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+    struct delbm_status status;
+    const enum delbm_code code = opening(cases[k].discs, &status);
+    cr_expect_eq(code, cases[k].said ? DELBM_INVALID : DELBM_OK, "%s: %d, %s", cases[k].discs, code, status.message);
+    if (cases[k].said) cr_expect(strstr(status.message, cases[k].said), "%s: %s", cases[k].discs, status.message);
+  }
+}
+
 Test(api, discs_go_where_they_are_put)
 {
   struct delbm_simulation *s = opened(crowd);

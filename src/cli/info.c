@@ -6,6 +6,7 @@
 #include "base/threads.h"
 #include "contact/law.h"
 #include "fluid/sweep.h"
+#include "scene/scene_overlaps.h"
 #include "scene/scene_tree.h"
 #include "sim/blocked.h"
 #include "sim/estimate.h"
@@ -197,6 +198,31 @@ static void print_discs(const struct scene *scene)
          scene->coupling.solve == SOLVE_IMPLICIT ? "implicit" : "explicit-averaged");
 }
 
+/* Overlaps at the start, which contacts push apart: the first few, and how many more. */
+static bool print_overlaps(const struct scene *scene, struct status *status)
+{
+  enum { SHOWN = 5 };
+  static const char *const sides[SIDE_COUNT] = {
+      [SIDE_LEFT] = "left", [SIDE_RIGHT] = "right", [SIDE_BOTTOM] = "bottom", [SIDE_TOP] = "top"};
+  struct scene_overlaps found;
+  const bool ok = scene_overlaps_find(scene, scene->particles.count, &found, status);
+  if (ok && found.count > 0)
+    printf("  note: %zu overlap%s at the start, which contacts push apart:", found.count, found.count == 1 ? "" : "s");
+  for (size_t k = 0; ok && k < found.count && k < SHOWN; k++) {
+    const struct scene_overlap *overlap = &found.list[k];
+    printf("%s disc %zu and ", k ? ";" : "", overlap->a);
+    if (scene_overlap_is_with_side(overlap))
+      printf("the %s side", sides[overlap->b - overlap_sides]);
+    else
+      printf("disc %zu", overlap->b);
+    printf(", %.3g cells", overlap->depth);
+  }
+  if (ok && found.count > SHOWN) printf("; and %zu more", found.count - SHOWN);
+  if (ok && found.count > 0) printf("\n");
+  scene_overlaps_clear(&found);
+  return ok;
+}
+
 static void print_contacts(const struct scene *scene, const struct plan *plan)
 {
   if (!plan->pairs && !plan->walls) return;
@@ -279,6 +305,7 @@ static int print_case(const struct scene *scene, struct scene_errors *notes)
   print_speeds(scene);
   if (plan.exchange) print_discs(scene);
   print_contacts(scene, &plan);
+  if (plan.exchange && !print_overlaps(scene, &status)) return report_error(&status);
   print_advice(scene);
   char binding[THREADS_TEXT];
   threads_binding(binding);

@@ -2,6 +2,7 @@
 
 #include "base/memory.h"
 #include "scene/fill_grid.h"
+#include "scene/scene_overlaps.h"
 #include "scene/scene_units.h"
 
 #include <math.h>
@@ -253,6 +254,72 @@ static void check_cover(struct draft *draft, const struct tree_node *list)
                  most_cover, covered / box);
 }
 
+static const char *const side_names[SIDE_COUNT] = {
+    [SIDE_LEFT] = "left", [SIDE_RIGHT] = "right", [SIDE_BOTTOM] = "bottom", [SIDE_TOP] = "top"};
+
+/* A disc deep in a side, or in another disc, leaves it faster than fluid can follow. */
+static void check_depth(struct draft *draft, const struct scene_overlap *overlap)
+{
+  const bool side = scene_overlap_is_with_side(overlap);
+  char path[DISC_PATH];
+  disc_path(path, overlap->a, "position");
+  if (side && overlap->depth > most_depth_in_side)
+    draft_refuse(
+        draft, path,
+        "at most %g cells beyond a side, not %.3g beyond the %s one, for fluid to follow as the disc leaves it",
+        most_depth_in_side, overlap->depth, side_names[overlap->b - overlap_sides]);
+  if (!side && overlap->depth > most_depth_in_disc)
+    draft_refuse(draft, path,
+                 "at most %g cells within another disc, not %.3g within disc %zu, for fluid to follow as they part",
+                 most_depth_in_disc, overlap->depth, overlap->b);
+}
+
+/* How far a disc of this speed, `gap` before a side, goes beyond it: its energy on arrival, after drag (coefficient 1), with
+ * the fluid inside, is that of the spring, 2/5 of force times depth at small overlap. */
+static double depth_of_impact(const struct draft *draft, const struct disc_spec *disc, double gap, double speed)
+{
+  const struct scene *scene = &draft->scene;
+  const double density = disc->density > 0 ? disc->density : draft->density;
+  const double mass = M_PI * disc->radius * disc->radius * (density + 1);
+  const double arrival = speed * exp(-gap * disc->radius / mass);
+  const double spring = scene->contact.alpha * scene->contact.stiffness * 4 / 3 * sqrt(2 * disc->radius);
+  return pow(0.5 * mass * arrival * arrival / (0.4 * spring), 0.4);
+}
+
+static void check_impact(struct draft *draft, size_t i)
+{
+  const struct scene *scene = &draft->scene;
+  const struct disc_spec *disc = &scene->particles.discs[i];
+  for (enum side_name side = 0; side < SIDE_COUNT && disc->motion == DISC_FREE; side++) {
+    const int axis = side == SIDE_BOTTOM || side == SIDE_TOP;
+    const bool high = side == SIDE_RIGHT || side == SIDE_TOP;
+    const double at = disc->position[axis], distance = high ? scene->domain.size[axis] - at : at;
+    const double speed = high ? disc->velocity[axis] : -disc->velocity[axis];
+    if (scene->domain.side[side].type == SIDE_PERIODIC || speed <= 0) continue;
+    const double depth = depth_of_impact(draft, disc, fmax(0, distance - disc->radius), speed);
+    char path[DISC_PATH];
+    if (depth > most_depth_in_side)
+      draft_refuse(
+          draft, disc_path(path, i, "velocity"),
+          "one that takes the disc at most %g cells beyond the %s side, not %.3g; a larger contact.stiffness stops "
+          "it sooner",
+          most_depth_in_side, side_names[side], depth);
+  }
+}
+
+static bool check_depths(struct draft *draft, const struct tree_node *list, struct status *status)
+{
+  struct scene_overlaps found;
+  bool known = sides_known(draft) && draft_knows(draft, "domain.size") && draft->scene.contact.stiffness > 0;
+  for (size_t i = 0; i < list->count; i++) known = known && disc_known(list, i);
+  if (!known || scene_errors_total(draft->errors) > 0) return true; /* places that are wrong by themselves come first */
+  const bool ok = scene_overlaps_find(&draft->scene, list->count, &found, status);
+  for (size_t k = 0; ok && k < found.count; k++) check_depth(draft, &found.list[k]);
+  for (size_t i = 0; ok && i < list->count; i++) check_impact(draft, i);
+  scene_overlaps_clear(&found);
+  return ok;
+}
+
 static bool check_discs(struct draft *draft, struct status *status)
 {
   const struct tree_node *list = tree_find(draft->root, "particles.discs");
@@ -261,7 +328,7 @@ static bool check_discs(struct draft *draft, struct status *status)
     if (disc_known(list, i)) check_disc(draft, i);
   }
   check_cover(draft, list);
-  return check_centres(draft, list, status);
+  return check_centres(draft, list, status) && check_depths(draft, list, status);
 }
 
 /* A free disc needs a density: its own or particles.density. */
