@@ -3,6 +3,7 @@
 #include "contact/lens.h"
 #include "contact/overlap.h"
 #include "drive.h"
+#include "scene/scene_overlaps.h"
 #include "scenes.h"
 #include "sim/contact_memory.h"
 
@@ -670,6 +671,106 @@ static bool pass(struct contact_memory *memory, uint32_t discs, char *bytes, siz
   const bool passed = contact_memory_store(memory, discs, &store, status);
   fclose(store.stream);
   return passed;
+}
+
+/* A disc that rises against the top side, or a disc held below it. */
+static void expect_rest(double density, double viscosity, bool held)
+{
+  struct scene scene = scene_box(24, 30, viscosity, SIDES_CLOSED);
+  struct simulation *simulation;
+  struct status status;
+  scene.fluid.zero_flux = true;
+  scene.particles.gravity[1] = -0.009;
+  scene_add_disc(&scene, 3, density, 12.3, held ? 21.1 : 27.1);
+  if (held) scene_add_disc(&scene, 3, 2, 12.3, 27)->motion = DISC_FIXED;
+  cr_assert(simulation_create(&simulation, &scene, &status), "%s", status.message);
+  const bool ran = simulation_advance(simulation, 6000, &status);
+  const struct discs *d = simulation_discs(simulation);
+  cr_expect(ran, "density %g, viscosity %g: %s", density, viscosity, ran ? "" : status.message);
+  cr_expect_lt(hypot(d->vx[0], d->vy[0]), held ? 0.01 : 1e-4, "density %g, viscosity %g: at (%g, %g)", density,
+               viscosity, d->x[0], d->y[0]); /* from a disc it may roll off */
+  simulation_destroy(simulation);
+  scene_clear(&scene);
+}
+
+/* Inertia within a step that is negative in some combination of motions made them rock until they diverged. */
+Test(rest, light_discs_against_a_wall_or_a_disc_stay_there_at_any_viscosity)
+{
+  static const double densities[] = {0.01, 0.1, 0.3}, viscosities[] = {0.3, 1, 3, 10};
+  for (int d = 0; d < 3; d++)
+    for (int v = 0; v < 4; v++)
+      for (int held = 0; held < 2; held++) expect_rest(densities[d], viscosities[v], held);
+}
+
+/* As deep as a case may start it: in the bottom side, or one disc in another. */
+static void expect_to_leave(double radius, double density, double viscosity, bool pair)
+{
+  const int size = (int)(4 * radius) + 8;
+  struct scene scene = scene_box(size, size, viscosity, SIDES_CLOSED);
+  struct simulation *simulation;
+  struct status status;
+  const double low = pair ? size / 2.0 - radius + 4 : radius - 4;
+  scene_add_disc(&scene, radius, density, size / 2.0 + 0.3, low);
+  if (pair) scene_add_disc(&scene, radius, density, size / 2.0 + 0.3, low + 2 * radius - 8);
+  cr_assert(simulation_create(&simulation, &scene, &status), "%s", status.message);
+  const bool ran = simulation_advance(simulation, density > 1 ? 1500 : 800, &status);
+  const struct discs *d = simulation_discs(simulation);
+  const double depth = pair ? 2 * radius - (d->y[1] - d->y[0]) : radius - d->y[0];
+  cr_expect(ran, "R = %g, density %g, viscosity %g, pair %d: %s", radius, density, viscosity, pair,
+            ran ? "" : status.message);
+  cr_expect_lt(depth, pair ? 4 : 3, "R = %g, density %g, viscosity %g, pair %d: still %g cells deep", radius, density,
+               viscosity, pair, depth);
+  simulation_destroy(simulation);
+  scene_clear(&scene);
+}
+
+Test(rest, discs_that_start_in_a_wall_or_in_each_other_come_out_without_divergence)
+{
+  static const double densities[] = {0.05, 1, 50}, viscosities[] = {0.005, 0.5};
+  for (int d = 0; d < 3; d++)
+    for (int v = 0; v < 2; v++)
+      for (int pair = 0; pair < 2; pair++)
+        for (int k = 0; k < 2; k++) expect_to_leave(k ? 10 : 5, densities[d], viscosities[v], pair);
+}
+
+/* Overlaps of all pairs and sides one by one. */
+static size_t overlaps_one_by_one(const struct scene *scene, double *depth)
+{
+  const int *size = scene->domain.size;
+  size_t count = 0;
+  for (size_t i = 0; i < scene->particles.count; i++) {
+    const struct disc_spec *a = &scene->particles.discs[i];
+    for (size_t j = i + 1; j < scene->particles.count; j++) {
+      const struct disc_spec *b = &scene->particles.discs[j];
+      const double dx = remainder(b->position[0] - a->position[0], size[0]), dy = b->position[1] - a->position[1];
+      const double overlap = a->radius + b->radius - hypot(dx, dy);
+      if (overlap > 0 && (a->motion == DISC_FREE || b->motion == DISC_FREE)) count++, *depth += overlap;
+    }
+    const double beyond[2] = {a->radius - a->position[1], a->position[1] + a->radius - size[1]};
+    for (int k = 0; k < 2; k++)
+      if (beyond[k] > 0 && a->motion == DISC_FREE) count++, *depth += beyond[k];
+  }
+  return count;
+}
+
+Test(overlap, at_the_start_is_found_between_all_discs_and_with_all_sides)
+{
+  struct scene scene = scene_box(50, 40, 0.05, SIDES_PERIODIC);
+  struct scene_overlaps found;
+  struct status status;
+  double expected = 0, sum = 0;
+  scene.domain.side[SIDE_BOTTOM].type = scene.domain.side[SIDE_TOP].type = SIDE_WALL;
+  for (int k = 0; k < 60; k++)
+    scene_add_disc(&scene, 1 + k % 7, 1, fmod(17.3 * k, 50), fmod(11.9 * k, 40))->motion =
+        k % 3 ? DISC_FREE : DISC_FIXED;
+  const size_t count = overlaps_one_by_one(&scene, &expected);
+  cr_assert(scene_overlaps_find(&scene, scene.particles.count, &found, &status));
+  for (size_t k = 0; k < found.count; k++) sum += found.list[k].depth;
+  cr_expect_gt(count, 50);
+  cr_expect_eq(found.count, count, "%zu, not %zu", found.count, count);
+  cr_expect_float_eq(sum, expected, 1e-9);
+  scene_overlaps_clear(&found);
+  scene_clear(&scene);
 }
 
 Test(memory, walked_through_from_anywhere_finds_each_contact_and_no_other)
