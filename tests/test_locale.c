@@ -123,7 +123,7 @@ Test(locales, of_the_host_are_not_those_of_messages_from_other_threads)
   omp_set_num_threads(3);
   cr_assert(setlocale(LC_ALL, german));
   cr_assert_eq(delbm_open_text(&s,
-                               "domain: {size: [160, 100]}\nfluid: {viscosity: 0.1}\n"
+                               "domain: {size: [160, 100], left: periodic, right: periodic}\nfluid: {viscosity: 0.1}\n"
                                "particles:\n"
                                "  density: 50\n"
                                "  gravity: [0.005, 0]\n"

@@ -735,8 +735,8 @@ Test(scene, limits_between_keys_are_refused_from_where_they_are_passed)
     const char *key, *good, *bad;
   } limits[] = {
       {"domain.size", "[65536, 131072]", "[65536, 131073]"},
-      {"particles.discs", "[{radius: 5, position: [0, 0]}]", "[{radius: 5, position: [-1e-300, 0]}]"},
-      {"particles.discs", "[{radius: 5, position: [99.99999999999999, 199.99999999999997]}]",
+      {"particles.discs", "[{radius: 4, position: [0, 0]}]", "[{radius: 5, position: [-1e-300, 0]}]"},
+      {"particles.discs", "[{radius: 4, position: [99.99999999999999, 199.99999999999997]}]",
        "[{radius: 5, position: [100, 150]}]"},
       {"particles.discs", "[{radius: 5, position: [50, 150]}]", "[{radius: 5, position: [50, 200]}]"},
       {"particles.discs", "[{radius: 10, position: [50, 150], spin: 0.03}]",
@@ -748,12 +748,14 @@ Test(scene, limits_between_keys_are_refused_from_where_they_are_passed)
       {"particles.discs", "[{radius: 1, position: [50, 150]}, {radius: 1, position: [50, 150.00000000000003]}]",
        "[{radius: 1, position: [50, 150]}, {radius: 1, position: [50, 150]}]"},
       {"particles.discs",
-       "[{radius: 99, position: [50, 150]}, {radius: 99, position: [51, 150]}, {radius: 99, position: [52, 150]}, "
+       "[{radius: 99, position: [50, 150], fixed: true}, {radius: 99, position: [51, 150], fixed: true}, {radius: 99, "
+       "position: [52, 150], fixed: true}, "
        "{radius: "
-       "99, position: [53, 150]}]",
-       "[{radius: 99, position: [50, 150]}, {radius: 99, position: [51, 150]}, {radius: 99, position: [52, 150]}, "
+       "99, position: [53, 150], fixed: true}]",
+       "[{radius: 99, position: [50, 150], fixed: true}, {radius: 99, position: [51, 150], fixed: true}, {radius: 99, "
+       "position: [52, 150], fixed: true}, "
        "{radius: "
-       "99, position: [53, 150]}, {radius: 0.5, position: [54, 150]}]"},
+       "99, position: [53, 150], fixed: true}, {radius: 0.5, position: [54, 150], fixed: true}]"},
       {"domain", "{size: [100, 200], left: periodic, right: periodic, top: {velocity: [0.1, 0]}}",
        "{size: [100, 200], left: periodic, right: periodic, top: {velocity: [0.1, 1e-300]}}"},
       {"domain", "{size: [100, 200], left: {type: inlet, velocity: [1e-300, 0.1]}, right: outlet}",
@@ -811,7 +813,7 @@ Test(scene, disc_may_be_four_cells_narrower_than_a_periodic_extent)
                fill ? "domain: {size: [100, 200], %s}\nfluid: {viscosity: 0.05}\nrun: {steps: 1}\n"
                       "particles: {density: 2, fill: {spacing: 100, radius: %.17g}}\n"
                     : "domain: {size: [100, 200], %s}\nfluid: {viscosity: 0.05}\nrun: {steps: 1}\n"
-                      "particles: {density: 2, discs: [{position: [50, 100], radius: %.17g}]}\n",
+                      "particles: {density: 2, discs: [{position: [50, 100], radius: %.17g, fixed: true}]}\n",
                discs[i].sides, discs[i].radius);
       struct reading reading = read_text(text);
       if (fill && discs[i].radius > 50) {
