@@ -56,7 +56,6 @@ static inline struct fluid_force flow_force(const struct flow *flow)
   return (struct fluid_force){{c->force[0], c->force[1]}, {c->uniform[0], c->uniform[1]}};
 }
 
-
 /* Rows first .. end - 1; those beyond a periodic side are counted on. */
 struct rows {
   int first, end;

@@ -14,13 +14,13 @@
  *   d = 2 permeability/viscosity
  * makes the permeability of solids a constant, 0.001 cells^2: slow flow is then independent of viscosity also with
  * damping (trt), and the drag of a square array of R = 5 changes by 0.04 % at a solid fraction of 0.2 and by 0.6 % at
- * 0.5. (A constant d = 0.1 changes the latter by 5 % at viscosity 1/6 and by 30 % at 1.) The bound on d keeps fluid
- * inside a disc together with it where viscosity is small: at d > 1 the difference decays the slower the larger d.
+ * 0.5. (A constant d = 0.1 changes the latter by 5 % at viscosity 1/6 and by 30 % at 1.) The bound of 0.25, which is reached
+ * below viscosity 0.008, keeps fluid inside a disc together with it: at d > 1 the difference decays the slower the larger d.
  *
  * The rim of a disc that spins drives the fluid inside, at second order in its speed, which needs d of about
  * 4 rim^2 at any viscosity (a third of that is just enough at Mach 0.14, 0.5: map "fixed disc that spins").
  *
- * Cells between surfaces. Fluid that is caught where a disc overlaps another one or a side can not leave through its
+ * Cells between surfaces. Fluid that is caught where a disc overlaps another one or a side cannot leave through its
  * neighbours, and would carry the weight in place of the contact, or be driven ever faster by surfaces that pass each
  * other. In cells that two discs cover, or beside a side, d is at least 0.5. With 0.05 such fluid left within some 10,000
  * steps (R = 10), and surfaces that pass each other drove it at three times their speed; with 0.5 it is no faster than
