@@ -204,6 +204,8 @@ Test(discs, are_symmetric_with_every_form_area_search_and_without_volume_flux)
     scene.contact.search = k / 6 == 2 ? SEARCH_LINKED_CELL : SEARCH_GRID;
     scene.contact.substeps = k / 6 == 2 ? 3 : 0;
     scene.fluid.zero_flux = k / 6 < 3;
+    /* with so much damping in one sub-step, impulses are bounded by the energy that contacts hold */
+    if (k / 6 == 0) scene.contact.damping = 40, scene.contact.substeps = 1;
     snprintf(what, sizeof what, "box %d, form %d, area and search %d", k % 2, k / 2 % FORM_COUNT, k / 6);
     expect_symmetric(&scene, &(struct symmetric_run){.steps = DISC_STEPS, .what = what});
     scene_clear(&scene);
