@@ -317,3 +317,15 @@ Test(case_in_si, info_says_what_a_cell_and_a_step_are_and_what_to_change)
                      "grep 'grid Reynolds number' i | grep -q 'fluid.viscosity >= .*, by units.dx <= '"),
                0);
 }
+
+Test(unit, dimensions_differ_where_length_time_or_mass_does)
+{
+  static const char *const texts[] = {"1", "m", "s", "kg", "kg/m", "kg*s", "m/s", "kg*m/s^2"};
+  const struct units none = {0};
+  for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++)
+    for (size_t k = 0; k < sizeof texts / sizeof texts[0]; k++) {
+      struct unit a, b;
+      cr_assert(unit_parse(texts[i], &none, &a) && unit_parse(texts[k], &none, &b));
+      cr_expect_eq(unit_same_dimension(&a, &b), i == k, "%s and %s", texts[i], texts[k]);
+    }
+}
