@@ -494,6 +494,20 @@ Test(stability, explicit_coupling_of_a_light_disc_diverges_and_says_so_soon)
   scene_clear(&scene);
 }
 
+/* A heavy disc runs into a wall through viscous fluid. */
+Test(stability, fluid_squeezed_out_of_a_gap_too_fast_is_named_as_that)
+{
+  struct scene scene = scene_box(100, 100, 0.5, SIDES_CLOSED);
+  struct status status;
+  scene_add_disc(&scene, 5, 50, 50.3, 7)->velocity[1] = -0.08;
+  scene.contact.stiffness = 25;
+  struct simulation *simulation = start(&scene);
+  cr_assert_not(simulation_advance(simulation, 1000, &status));
+  cr_expect(strstr(status.message, "it lies between disc 0 and the bottom side"), "%s", status.message);
+  simulation_destroy(simulation);
+  scene_clear(&scene);
+}
+
 Test(stability, discs_that_close_an_outlet_are_named_as_what_makes_the_pressure_rise)
 {
   struct scene scene = scene_box(60, 24, 0.05, SIDES_CLOSED);

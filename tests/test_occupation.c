@@ -576,7 +576,7 @@ static int check_shares(const struct crowd *c, int cell, unsigned long seed)
   const double three_nu = 3 * c->p.scene.fluid.viscosity, total = fmin(1, sum);
   const bool between = owners > 1 || occupation_at_side(&c->p.occupation, cell % CROWD_NX, cell / CROWD_NX);
   const bool midpoint = c->p.scene.coupling.form == FORM_MIDPOINT;
-  const double damping = between ? 0.5 : fmin(0.25, 0.006 / three_nu), most = midpoint ? 1 / (1 + damping) : 1;
+  const double damping = between ? 0.5 : fmin(0.5, 0.006 / three_nu), most = midpoint ? 1 / (1 + damping) : 1;
   const double whole = fmin(most, total * three_nu / (1 - total + three_nu * (midpoint ? total : 1))); /* weight.h */
   const double accuracy = 1e-14 + 1e-15 / three_nu; /* by which round-off in eps changes B */
   cr_expect_float_eq(shares, whole, accuracy, "seed %lu, cell %d: %.17g, not %.17g", seed, cell, shares, whole);

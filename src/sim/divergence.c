@@ -6,6 +6,7 @@
 #include "sim/estimate.h"
 
 #include <math.h>
+#include <stdio.h>
 
 /* Excess of the mean density above which a box is said to hold too much fluid. */
 static const double large_excess = 0.1;
@@ -129,6 +130,52 @@ static bool explain_cells(const struct divergence *of, const struct estimate *fa
   return true;
 }
 
+/* Distance of a cell's centre from the rim of a disc, along an axis the nearest image. */
+static double gap(const struct divergence *of, size_t disc)
+{
+  double d[2] = {of->cell[0] + 0.5 - of->discs->x[disc], of->cell[1] + 0.5 - of->discs->y[disc]};
+  for (int axis = 0; axis < 2; axis++)
+    if (scene_is_periodic(of->scene, axis))
+      d[axis] -= of->scene->domain.size[axis] * rint(d[axis] / of->scene->domain.size[axis]);
+  return hypot(d[0], d[1]) - of->discs->radius[disc];
+}
+
+/* The side nearest to the cell, if within `reach`; SIDE_COUNT: none. */
+static enum side_name side_near(const struct divergence *of, double reach)
+{
+  for (enum side_name side = 0; side < SIDE_COUNT; side++) {
+    const int axis = side == SIDE_LEFT || side == SIDE_RIGHT ? 0 : 1;
+    const bool high = side == SIDE_RIGHT || side == SIDE_TOP;
+    const double at = of->cell[axis] + 0.5, distance = high ? of->scene->domain.size[axis] - at : at;
+    if (of->scene->domain.side[side].type == SIDE_WALL && distance <= reach) return side;
+  }
+  return SIDE_COUNT;
+}
+
+/* Fluid between surfaces that approach at a speed U leaves a gap h at about U sqrt(2 R/h). */
+static bool explain_squeeze(const struct divergence *of, struct status *status)
+{
+  const double reach = 3;
+  size_t near[2] = {0, 0}, count = 0;
+  for (size_t i = 0; i < of->discs->count && of->cell[0] >= 0 && count < 2; i++)
+    if (gap(of, i) <= reach) near[count++] = i;
+  const bool moves =
+      count > 0 && (of->discs->motion[near[0]] != DISC_FIXED || of->discs->motion[near[1]] != DISC_FIXED);
+  if (!moves) return false;
+  const enum side_name side = count == 1 ? side_near(of, reach) : SIDE_COUNT;
+  if (count == 1 && side == SIDE_COUNT) return false;
+  char other[32];
+  if (count == 2)
+    snprintf(other, sizeof other, "disc %zu", near[1]);
+  else
+    snprintf(other, sizeof other, "the %s side", sides[side]);
+  status_add(status,
+             "; it lies between disc %zu and %s: fluid leaves a gap of a cell at sqrt(2 R) = %.2g times the speed at "
+             "which it closes; better: discs that approach more slowly, or a smaller fluid.viscosity",
+             near[0], other, sqrt(2 * of->discs->radius[near[0]]));
+  return true;
+}
+
 static bool explain_viscosity(const struct divergence *of, struct status *status)
 {
   const double least = (estimate_least_tau - 0.5) / 3;
@@ -152,5 +199,5 @@ void divergence_explain(const struct divergence *of, struct status *status)
   if (explain_dam(of, status) || explain_solve(of, status) || explain_load(of, status)) return;
   const bool fast = explain_start(of, status) || explain_speed(of, &fastest, status);
   const bool coarse = explain_cells(of, &fastest, status) || explain_viscosity(of, status);
-  if (!fast && !coarse) explain_excess(of, status);
+  if (!fast && !coarse && !explain_squeeze(of, status)) explain_excess(of, status);
 }

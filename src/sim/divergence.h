@@ -10,6 +10,7 @@ struct divergence {
   const struct discs *discs; /* as they are now */
   int64_t step;
   double excess; /* mean over all cells of density - 1; NAN: not known */
+  int cell[2];   /* the fastest one, or one that is not finite; -1: not known */
 };
 
 /* Adds the cause, where one is found, to the message of *status. */

@@ -280,10 +280,11 @@ static double congestion(struct simulation *s)
   return inlet ? diagnostics_totals(&s->flow.populations).excess_mass / (double)scene_cells(s->scene) : 0;
 }
 
-/* Adds the cause of a divergence to its message, and the speeds that the fluid has by now to the largest Mach number. */
-static void explain(struct simulation *s, struct status *status)
+/* Adds the cause of a divergence at cell (x, y), -1 if not known, to its message, and the speeds that the fluid has by now to the largest Mach number. */
+static void explain(struct simulation *s, int x, int y, struct status *status)
 {
-  struct divergence divergence = {.scene = s->scene, .discs = &s->discs, .step = s->step, .excess = NAN};
+  struct divergence divergence = {
+      .scene = s->scene, .discs = &s->discs, .step = s->step, .excess = NAN, .cell = {x, y}};
   if (!s->torn) {
     divergence.excess = congestion(s);
     s->max_mach = fmax(s->max_mach, sqrt(3) * diagnostics_largest_speed(&s->flow.populations));
@@ -315,7 +316,7 @@ bool simulation_check(struct simulation *s, struct status *status)
     s->max_mach = fmax(s->max_mach, mach);
     return true;
   }
-  explain(s, status);
+  explain(s, worst.x, worst.y, status);
   team_fail(&s->team, status);
   return false;
 }
@@ -325,7 +326,7 @@ static bool advance_to_look(struct simulation *s, int64_t steps, struct status *
 {
   run_steps(s, steps);
   if (!s->team.failed) return true;
-  if (!s->team.first.out_of_memory) explain(s, &s->team.first);
+  if (!s->team.first.out_of_memory) explain(s, -1, -1, &s->team.first);
   *status = s->team.first;
   return false;
 }

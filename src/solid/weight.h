@@ -38,7 +38,7 @@ struct weight_law {
 /* d in the cells of a disc whose rim has this speed. The forms of the paper are as printed, without damping. */
 static inline double weight_damping(enum coupling_form form, double viscosity, double rim)
 {
-  const double permeability = 0.001, largest = 0.25, steady = 2 * permeability / viscosity;
+  const double permeability = 0.001, largest = 0.5, steady = 2 * permeability / viscosity;
   if (form != FORM_MIDPOINT) return 0;
   return (steady < largest ? steady : largest) + 4 * rim * rim;
 }
