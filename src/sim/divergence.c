@@ -159,8 +159,8 @@ static bool explain_squeeze(const struct divergence *of, struct status *status)
   size_t near[2] = {0, 0}, count = 0;
   for (size_t i = 0; i < of->discs->count && of->cell[0] >= 0 && count < 2; i++)
     if (gap(of, i) <= reach) near[count++] = i;
-  const bool moves =
-      count > 0 && (of->discs->motion[near[0]] != DISC_FIXED || of->discs->motion[near[1]] != DISC_FIXED);
+  bool moves = false;
+  for (size_t k = 0; k < count; k++) moves |= of->discs->motion[near[k]] != DISC_FIXED;
   if (!moves) return false;
   const enum side_name side = count == 1 ? side_near(of, reach) : SIDE_COUNT;
   if (count == 1 && side == SIDE_COUNT) return false;
