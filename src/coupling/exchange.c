@@ -36,7 +36,7 @@ struct held exchange_held(const struct exchange *e, const struct discs *d, size_
   const double inertia = d->mass[i] - d->fluid_mass[i] + g->m0 / 2;
   const double angular = d->inertia[i] - d->fluid_inertia[i] + g->m2 / 2;
   /* off-diagonal part of diag(m - m_f, m - m_f, I - I_f) + M/2 in those units */
-  const double coupling = hypot(g->m1x, g->m1y) / 2 / sqrt(d->fluid_mass[i] * d->fluid_inertia[i]);
+  const double coupling = sqrt((g->m1x * g->m1x + g->m1y * g->m1y) / (4 * d->fluid_mass[i] * d->fluid_inertia[i]));
   const double least = least_inertia + coupled_inertia * coupling;
   const double mass = fmax(0, least * d->fluid_mass[i] - inertia);
   const double depth = mass / d->fluid_mass[i] * d->radius[i];

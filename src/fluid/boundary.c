@@ -263,6 +263,17 @@ void boundary_after(struct boundary *b, struct populations *p, int y, int x0, in
   links(b, p, y, x0, x1, true);
 }
 
+void boundary_prefetch(const struct populations *p, int y)
+{
+  const size_t size = p->precision == PRECISION_DOUBLE ? sizeof(double) : sizeof(float);
+  if (p->parity == 1) return;
+  for (enum side_name side = SIDE_LEFT; side <= SIDE_RIGHT; side++)
+    for (int j = 0; j < 3; j++) {
+      const int x = side == SIDE_LEFT ? 0 : p->nx - 1;
+      __builtin_prefetch((const char *)p->block + populations_received(p, inward[side][j], x, y) * size, 1);
+    }
+}
+
 void boundary_refill(struct boundary *b, struct populations *p)
 {
   struct populations before = *p; /* the same populations, as the last step left them */

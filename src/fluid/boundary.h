@@ -57,6 +57,10 @@ void boundary_destroy(struct boundary *boundary);
 /* What the links receive once cells x0 .. x1 - 1 of row y have taken the step of populations->parity. */
 void boundary_after(struct boundary *boundary, struct populations *populations, int y, int x0, int x1);
 
+/* Brings the ghosts that boundary_after will write for row y into cache while the row is swept: in a step of parity 0 no
+ * sweep touches them. */
+void boundary_prefetch(const struct populations *populations, int y);
+
 /* What all links receive in the coming step, from populations that were read from a checkpoint. */
 void boundary_refill(struct boundary *boundary, struct populations *populations);
 

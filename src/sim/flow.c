@@ -210,6 +210,7 @@ void stage_sweep(struct flow *f, const struct rows *rows, const struct sweep_dis
   after.parity ^= 1;
   for (int k = first; k < end; k++) {
     const int y = populations_row(p, k);
+    boundary_prefetch(p, y);
     sweep_row_at(f, y, discs);
     boundary_after(&f->boundary, p, y, 0, p->nx);
     if (discs->next && k > first + 1) take_sums(f, &after, discs->next, populations_row(p, k - 1));
