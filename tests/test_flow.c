@@ -95,6 +95,29 @@ Test(wave, of_shear_that_starts_with_its_stress_decays_from_the_first_step)
   }
 }
 
+static struct flow_state rising(const void *context, int x, int y)
+{
+  (void)context, (void)x, (void)y;
+  return (struct flow_state){.density = 1, .velocity = {0, 1e-4}};
+}
+
+/* Fluid that moves as a whole along an axis that walls close. */
+Test(closed_box, loses_98_percent_of_its_mean_momentum_within_four_steps)
+{
+  enum { NX = 30, NY = 40, CELLS = NX * NY };
+  struct scene scene = scene_box(NX, NY, 0.05, SIDES_CLOSED);
+  double rho[CELLS], uy[CELLS], momentum = 0;
+  scene.fluid.zero_flux = true;
+  struct simulation *simulation = start(&scene);
+  simulation_start(simulation, rising, NULL);
+  advance(simulation, 4);
+  simulation_fields(simulation, rho, NULL, uy);
+  for (int k = 0; k < CELLS; k++) momentum += rho[k] * uy[k] / CELLS;
+  cr_expect(fabs(momentum) < 2e-6, "mean momentum %g of 1e-4", momentum);
+  simulation_destroy(simulation);
+  scene_clear(&scene);
+}
+
 /* Runs until the mean velocity changes by less than 1e-6 over 200 steps; K = F/(mu U). */
 static double square_array_drag(const struct scene *scene, double *reported)
 {
