@@ -203,7 +203,7 @@ Test(checkpoint, of_another_case_is_known_and_of_another_length_is_not)
   cr_expect_neq(first, second);
 }
 
-Test(checkpoint, whose_head_tells_another_step_than_its_state_is_refused_though_its_checksum_is_right)
+Test(checkpoint, whose_head_tells_another_step_or_order_of_bytes_is_refused_though_its_checksum_is_right)
 {
   shell_enter();
   struct scene scene = scene_box(40, 30, 0.05, SIDES_CLOSED);
@@ -222,6 +222,9 @@ Test(checkpoint, whose_head_tells_another_step_than_its_state_is_refused_though_
   cr_expect_not(checkpoint_read("state", other, &read, &status));
   cr_expect(status.code == DELBM_IO && strcmp(status.message, "state: its state is of another step") == 0, "%s",
             status.message);
+  forge_head("state", -1, 1);
+  cr_expect_not(checkpoint_examine("state", 1, &head, &status));
+  cr_expect(strstr(status.message, "another order of bytes"), "%s", status.message);
   simulation_destroy(simulation);
   simulation_destroy(other);
   shell_leave();

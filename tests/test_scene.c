@@ -885,3 +885,19 @@ Test(scene, broken_cases_get_the_expected_errors, .timeout = 60 * SLOWNESS)
   closedir(folder);
   cr_expect_geq(count, 100);
 }
+
+Test(errors, beyond_those_kept_are_counted_in_a_last_line)
+{
+  struct scene_errors errors = {0};
+  char *text = NULL;
+  size_t size = 0;
+  for (int k = 0; k < SCENE_ERRORS_KEPT + 3; k++) scene_errors_add(&errors, "error %d", k);
+  FILE *file = open_memstream(&text, &size);
+  cr_assert(file);
+  scene_errors_print(&errors, file);
+  cr_assert_eq(fclose(file), 0);
+  cr_expect_eq(scene_errors_total(&errors), SCENE_ERRORS_KEPT + 3);
+  cr_expect(strstr(text, "error 999\nand 3 more\n"), "%s", text + size - 40);
+  free(text);
+  scene_errors_clear(&errors);
+}
