@@ -6,6 +6,18 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+
+/* Takes the number of a line of run.json, if it is the member `name`; null is none. */
+static void take_member(const char *line, const char *name, double *value)
+{
+  char *end;
+  const char *at = strstr(line, name);
+  if (!at) return;
+  at += strlen(name);
+  const double number = strtod(at, &end);
+  if (end != at) *value = number;
+}
 
 bool ambient_read_mean(const char *directory, double mean[2], struct status *status)
 {
@@ -17,9 +29,8 @@ bool ambient_read_mean(const char *directory, double mean[2], struct status *sta
   free(path);
   if (!file) return good;
   while (fgets(line, sizeof line, file)) {
-    double value;
-    if (sscanf(line, " \"mean_ux\": %lf", &value) == 1) mean[0] = value;
-    if (sscanf(line, " \"mean_uy\": %lf", &value) == 1) mean[1] = value;
+    take_member(line, "\"mean_ux\": ", &mean[0]);
+    take_member(line, "\"mean_uy\": ", &mean[1]);
   }
   fclose(file);
   return true;
