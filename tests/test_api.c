@@ -357,6 +357,60 @@ Test(api, a_callback_that_keeps_the_velocity_changes_nothing)
   delbm_close(b);
 }
 
+/* Speeds up along an axis. */
+static void speed_up(void *context, int64_t at, const struct delbm_disc_state *now, double velocity[2], double *spin)
+{
+  (void)at, (void)now, (void)spin;
+  velocity[*(const int *)context] += 1e-4;
+}
+
+Test(api, the_force_on_a_disc_that_a_callback_speeds_up_is_the_same_along_x_and_y)
+{
+  double force[2];
+  for (int axis = 0; axis < 2; axis++) {
+    struct delbm_disc_state state;
+    struct delbm_simulation *s =
+        opened("domain: {size: [40, 40], left: periodic, right: periodic, bottom: periodic, top: periodic}\n"
+               "fluid: {viscosity: 0.1}\n"
+               "particles: {discs: [{radius: 6, position: [20, 20], driven: true}]}\n"
+               "run: {steps: 10}\n");
+    cr_assert_eq(delbm_drive(s, 0, speed_up, &axis, NULL), DELBM_OK);
+    step(s, 5);
+    cr_assert_eq(delbm_read_discs(s, 0, 1, &state, NULL), DELBM_OK);
+    force[axis] = state.force[axis];
+    cr_expect(fabs(state.force[!axis]) < 1e-12);
+    delbm_close(s);
+  }
+  cr_expect(force[0] < 0 && fabs(force[1] / force[0] - 1) < 1e-10, "%g, %g", force[0], force[1]);
+}
+
+Test(api, of_two_callbacks_the_one_that_stays_is_asked_on)
+{
+  struct delbm_simulation *s = opened("domain: {size: [60, 40]}\nfluid: {viscosity: 0.1}\n"
+                                      "particles:\n  discs:\n"
+                                      "    - {radius: 5, position: [15, 20], driven: true}\n"
+                                      "    - {radius: 5, position: [45, 20], driven: true}\n"
+                                      "run: {steps: 10}\n");
+  struct driver first = {0, 0}, second = {0, 0};
+  cr_assert_eq(delbm_drive(s, 0, keep_on, &first, NULL) + delbm_drive(s, 1, keep_on, &second, NULL), 0);
+  step(s, 2);
+  cr_assert_eq(delbm_drive(s, 0, NULL, NULL, NULL), DELBM_OK);
+  step(s, 3);
+  cr_expect(first.calls == 2 && second.calls == 5, "%d, %d", first.calls, second.calls);
+  delbm_close(s);
+}
+
+Test(api, steps_below_zero_and_places_on_the_far_edge_are_refused)
+{
+  struct delbm_simulation *s = opened(crowd);
+  struct delbm_disc_state state;
+  cr_expect_eq(delbm_step(s, -1, NULL), DELBM_USAGE);
+  cr_assert_eq(delbm_read_discs(s, 1, 1, &state, NULL), DELBM_OK);
+  state.position[0] = 120;
+  cr_expect_eq(delbm_write_discs(s, 1, 1, &state, NULL), DELBM_USAGE);
+  delbm_close(s);
+}
+
 Test(api, a_callback_that_goes_too_far_is_refused)
 {
   struct delbm_simulation *s = opened(crowd);
@@ -591,6 +645,8 @@ Test(api, what_is_wrong_is_told_by_key_and_place)
   cr_expect(strstr(status.message, "domain.top.type: got 77; expected wall, periodic"), "%s", status.message);
   const char *const settings[] = {"fluid.viscosity"};
   cr_expect_eq(delbm_open_scene(&s, &scene, settings, 1, &status), DELBM_USAGE);
+  const char *const nameless[] = {"=0.1"};
+  cr_expect_eq(delbm_open_scene(&s, &scene, nameless, 1, &status), DELBM_USAGE);
   cr_expect_eq(delbm_open_file(&s, "nowhere.yaml", NULL, 0, &status), DELBM_IO);
   cr_expect_null(s);
   delbm_close(NULL);
