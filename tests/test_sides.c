@@ -144,6 +144,50 @@ Test(outlet, lets_out_the_sound_of_an_inlet_that_starts_at_once)
   scene_clear(&scene);
 }
 
+/* Mean density at the face of the outlet and pressure drop, as a density, after `steps` steps in a channel of resting walls. */
+static void channel(int length, int height, double speed, double viscosity, int64_t steps, double *face, double *drop)
+{
+  struct scene scene = scene_box(length, height, viscosity, SIDES_CLOSED);
+  scene.domain.side[SIDE_LEFT] = (struct side){SIDE_INLET, {speed, 0}};
+  scene.domain.side[SIDE_RIGHT].type = SIDE_OUTLET;
+  struct simulation *simulation = start(&scene);
+  double *rho = malloc(sizeof(double) * (size_t)(length * height)),
+         *u = malloc(sizeof(double) * (size_t)(length * height));
+  advance(simulation, steps);
+  simulation_fields(simulation, rho, u, NULL);
+  double mean[3] = {0}, flux = 0;
+  for (int y = 0; y < height; y++) {
+    mean[0] += rho[y * length] / height;
+    mean[1] += rho[y * length + length - 2] / height;
+    mean[2] += rho[y * length + length - 1] / height;
+    flux += rho[y * length + length - 1] * u[y * length + length - 1];
+  }
+  *face = mean[2] + (mean[2] - mean[1]) / 2;
+  *drop = mean[0] - *face;
+  cr_expect(fabs(flux / (speed * height) - 1) < 1e-3, "%d x %d: flux out %g of %g", length, height, flux,
+            speed * height);
+  free(rho);
+  free(u);
+  simulation_destroy(simulation);
+  scene_clear(&scene);
+}
+
+Test(outlet, has_the_reference_density_within_1_percent_of_the_pressure_drop_of_channels)
+{
+  static const int aspects[] = {5, 10, 20};
+  static const double reynolds[] = {4, 20, 100};
+  enum { HEIGHT = 10 };
+  for (int a = 0; a < 3; a++)
+    for (int r = 0; r < 3; r++) {
+      const double speed = reynolds[r] < 10 ? 0.02 : 0.05, viscosity = speed * HEIGHT / reynolds[r];
+      const int length = aspects[a] * HEIGHT;
+      double face, drop;
+      channel(length, HEIGHT, speed, viscosity, 200 * length, &face, &drop);
+      cr_expect(fabs(face - 1) < 0.01 * drop, "L/H %d, Re %g: density %.6f, pressure drop %g", aspects[a], reynolds[r],
+                face, drop);
+    }
+}
+
 static struct flow_state pulse(const void *middle, int x, int y)
 {
   const double at = (x - *(const double *)middle) / 12, rise = 1e-4 * exp(-at * at);
