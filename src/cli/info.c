@@ -37,11 +37,10 @@ static void print_help(void)
 static void print_box(const struct scene *scene)
 {
   static const char *const types[] = {"wall", "periodic", "inlet", "outlet"};
-  static const char *const sides[] = {"left", "right", "bottom", "top"};
   printf("box          %d x %d cells;", scene->domain.size[0], scene->domain.size[1]);
   for (int k = 0; k < SIDE_COUNT; k++) {
     const struct side *side = &scene->domain.side[k];
-    printf(" %s %s", sides[k], types[side->type]);
+    printf(" %s %s", side_name_text((enum side_name)k), types[side->type]);
     if (side->velocity[0] != 0 || side->velocity[1] != 0) printf(" at (%g, %g)", side->velocity[0], side->velocity[1]);
   }
   printf("\n");
@@ -202,8 +201,6 @@ static void print_discs(const struct scene *scene)
 static bool print_overlaps(const struct scene *scene, struct status *status)
 {
   enum { SHOWN = 5 };
-  static const char *const sides[SIDE_COUNT] = {
-      [SIDE_LEFT] = "left", [SIDE_RIGHT] = "right", [SIDE_BOTTOM] = "bottom", [SIDE_TOP] = "top"};
   struct scene_overlaps found;
   const bool ok = scene_overlaps_find(scene, scene->particles.count, &found, status);
   if (ok && found.count > 0)
@@ -212,7 +209,7 @@ static bool print_overlaps(const struct scene *scene, struct status *status)
     const struct scene_overlap *overlap = &found.list[k];
     printf("%s disc %zu and ", k ? ";" : "", overlap->a);
     if (scene_overlap_is_with_side(overlap))
-      printf("the %s side", sides[overlap->b - overlap_sides]);
+      printf("the %s side", side_name_text((enum side_name)(overlap->b - overlap_sides)));
     else
       printf("disc %zu", overlap->b);
     printf(", %.3g cells", overlap->depth);

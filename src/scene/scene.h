@@ -162,6 +162,14 @@ static inline double rate_from_magic(double magic, double viscosity)
   return 1.0 / (0.5 + magic / (3.0 * viscosity));
 }
 
+/* As in the keys of a case. */
+static inline const char *side_name_text(enum side_name side)
+{
+  static const char *const names[SIDE_COUNT] = {
+      [SIDE_LEFT] = "left", [SIDE_RIGHT] = "right", [SIDE_BOTTOM] = "bottom", [SIDE_TOP] = "top"};
+  return names[side];
+}
+
 static inline bool scene_is_periodic(const struct scene *scene, int axis)
 {
   return scene->domain.side[axis == 0 ? SIDE_LEFT : SIDE_BOTTOM].type == SIDE_PERIODIC;

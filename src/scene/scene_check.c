@@ -254,9 +254,6 @@ static void check_cover(struct draft *draft, const struct tree_node *list)
                  most_cover, covered / box);
 }
 
-static const char *const side_names[SIDE_COUNT] = {
-    [SIDE_LEFT] = "left", [SIDE_RIGHT] = "right", [SIDE_BOTTOM] = "bottom", [SIDE_TOP] = "top"};
-
 /* A disc deep in a side, or in another disc, leaves it faster than fluid can follow. */
 static void check_depth(struct draft *draft, const struct scene_overlap *overlap)
 {
@@ -267,7 +264,7 @@ static void check_depth(struct draft *draft, const struct scene_overlap *overlap
     draft_refuse(
         draft, path,
         "at most %g cells beyond a side, not %.3g beyond the %s one, for fluid to follow as the disc leaves it",
-        most_depth_in_side, overlap->depth, side_names[overlap->b - overlap_sides]);
+        most_depth_in_side, overlap->depth, side_name_text((enum side_name)(overlap->b - overlap_sides)));
   if (!side && overlap->depth > most_depth_in_disc)
     draft_refuse(draft, path,
                  "at most %g cells within another disc, not %.3g within disc %zu, for fluid to follow as they part",
@@ -303,7 +300,7 @@ static void check_impact(struct draft *draft, size_t i)
           draft, disc_path(path, i, "velocity"),
           "one that takes the disc at most %g cells beyond the %s side, not %.3g; a larger contact.stiffness stops "
           "it sooner",
-          most_depth_in_side, side_names[side], depth);
+          most_depth_in_side, side_name_text(side), depth);
   }
 }
 

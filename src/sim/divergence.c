@@ -11,8 +11,6 @@
 /* Excess of the mean density above which a box is said to hold too much fluid. */
 static const double large_excess = 0.1;
 
-static const char *const sides[] = {"left", "right", "bottom", "top"};
-
 /* Part of a side before which discs lie, no farther from it than a diameter. */
 static double part_closed(const struct divergence *of, enum side_name side)
 {
@@ -48,7 +46,7 @@ static bool explain_dam(const struct divergence *of, struct status *status)
   status_add(status,
              "; the box holds %.0f %% more fluid than at rest, as more enters than leaves: discs may close an outlet "
              "(they lie before %.0f %% of the %s side)",
-             100 * of->excess, 100 * part, sides[outlet]);
+             100 * of->excess, 100 * part, side_name_text(outlet));
   return true;
 }
 
@@ -102,8 +100,9 @@ static bool explain_start(const struct divergence *of, struct status *status)
       status,
       "; the inlet on the %s sets fluid at rest in motion at once at Mach %.2g: a wave of that strength crosses the "
       "box%s; better: a lower domain.%s.velocity (<= %g cells/step), or a larger fluid.viscosity",
-      sides[inlet], speed * sqrt(3), of->discs->count > 0 ? ", and beside discs fluid is up to twice as fast" : "",
-      sides[inlet], scene_advised_speed);
+      side_name_text(inlet), speed * sqrt(3),
+      of->discs->count > 0 ? ", and beside discs fluid is up to twice as fast" : "", side_name_text(inlet),
+      scene_advised_speed);
   return true;
 }
 
@@ -135,8 +134,7 @@ static double gap(const struct divergence *of, size_t disc)
 {
   double d[2] = {of->cell[0] + 0.5 - of->discs->x[disc], of->cell[1] + 0.5 - of->discs->y[disc]};
   for (int axis = 0; axis < 2; axis++)
-    if (scene_is_periodic(of->scene, axis))
-      d[axis] -= of->scene->domain.size[axis] * rint(d[axis] / of->scene->domain.size[axis]);
+    d[axis] = nearest_image(d[axis], of->scene->domain.size[axis], scene_is_periodic(of->scene, axis));
   return hypot(d[0], d[1]) - of->discs->radius[disc];
 }
 
@@ -168,7 +166,7 @@ static bool explain_squeeze(const struct divergence *of, struct status *status)
   if (count == 2)
     snprintf(other, sizeof other, "disc %zu", near[1]);
   else
-    snprintf(other, sizeof other, "the %s side", sides[side]);
+    snprintf(other, sizeof other, "the %s side", side_name_text(side));
   status_add(status,
              "; it lies between disc %zu and %s: fluid leaves a gap of a cell at sqrt(2 R) = %.2g times the speed at "
              "which it closes; better: discs that approach more slowly, or a smaller fluid.viscosity",

@@ -64,12 +64,11 @@ static void consider(struct estimate *fastest, const struct estimate *other)
 
 static void consider_sides(struct estimate *fastest, const struct scene *scene)
 {
-  static const char *const sides[] = {"left", "right", "bottom", "top"};
   for (int k = 0; k < SIDE_COUNT; k++) {
     const double *u = scene->domain.side[k].velocity;
     struct estimate own = {
         .speed = hypot(u[0], u[1]), .from = "the sides", .most = scene_advised_speed, .unit = "cells/step"};
-    snprintf(own.key, sizeof own.key, "domain.%s.velocity", sides[k]);
+    snprintf(own.key, sizeof own.key, "domain.%s.velocity", side_name_text((enum side_name)k));
     consider(fastest, &own);
   }
 }
