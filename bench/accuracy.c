@@ -37,12 +37,12 @@ void accuracy_apply(const struct accuracy_choice *choice, struct scene *scene)
                                               COLLISION_MRT, COLLISION_MRT, COLLISION_ADAPTIVE};
   struct rates *rates = &scene->fluid.rates;
   if (choice->operator!= OPERATOR_ADAPTIVE) scene_use_paper_rates(scene);
-  if (choice->operator== OPERATOR_BGK || choice->operator== OPERATOR_TRT) rates->e = rates->nu;
-  if (choice->operator== OPERATOR_BGK) rates->q = rates->nu;
+  if (choice->operator== OPERATOR_BGK || choice->operator== OPERATOR_TRT) rates->s_e = rates->s_nu;
+  if (choice->operator== OPERATOR_BGK) rates->s_q = rates->s_nu;
   if (choice->operator== OPERATOR_ADAPTIVE) scene_use_adaptive(scene);
   if (choice->operator== OPERATOR_TRT || choice->operator== OPERATOR_MAGIC)
-    rates->q = rate_from_magic(3.0 / 16, scene->fluid.viscosity);
-  if (choice->operator== OPERATOR_TWELFTH) rates->q = rate_from_magic(1.0 / 12, scene->fluid.viscosity);
+    rates->s_q = rate_from_magic(3.0 / 16, scene->fluid.viscosity);
+  if (choice->operator== OPERATOR_TWELFTH) rates->s_q = rate_from_magic(1.0 / 12, scene->fluid.viscosity);
   scene->fluid.collision = collisions[choice->operator];
   scene->fluid.precision = choice->precision;
   scene->coupling.form = choice->form;

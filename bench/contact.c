@@ -7,8 +7,8 @@
 #include "contact/lens.h"
 #include "contact/linked_cell.h"
 #include "scenes.h"
-#include "sim/plan.h"
 #include "sim/simulation.h"
+#include "sim/stages.h"
 
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
@@ -59,7 +59,7 @@ static bool crowd_create(struct crowd *c, int n, double radius, int size, struct
   const double spacing = (double)size / n;
   gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
   *c = (struct crowd){.scene = scene_crowd(size, size, radius, spacing, spacing / 2 - radius + 0.2)};
-  c->reach = plan_of(&c->scene).reach;
+  c->reach = stages_of(&c->scene).reach;
   const bool ok = discs_create(&c->discs, &c->scene, status) && allocate(c, status) &&
                   (c->vx = calloc(c->discs.count, sizeof *c->vx)) && (c->vy = calloc(c->discs.count, sizeof *c->vy));
   for (size_t i = 0; ok && i < c->discs.count; i++) {

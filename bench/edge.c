@@ -24,7 +24,7 @@ struct rates edge_rates(const struct edge_operator *choice, double viscosity)
   const double nu = rate_from_viscosity(viscosity), given = choice->q > 0 ? choice->q : nu;
   const double q = choice->magic > 0 ? rate_from_magic(choice->magic, viscosity) : given;
   return (struct rates){
-      .nu = nu, .e = choice->e > 0 ? choice->e : nu, .q = q, .q_fast = q < choice->fast ? choice->fast : 0};
+      .s_nu = nu, .s_e = choice->e > 0 ? choice->e : nu, .s_q = q, .s_q_fast = q < choice->fast ? choice->fast : 0};
 }
 
 bool edge_open(struct edge *edge, const struct bench_report *report, struct status *status)

@@ -50,11 +50,11 @@ static void layer_destroy(struct layer *l)
 
 static bool layer_create(struct layer *l, const struct scene *scene, double speed, struct status *status)
 {
-  const struct plan plan = plan_of(scene);
+  const struct stages stages = stages_of(scene);
   const int n = scene->domain.size[0];
   const size_t cells = (size_t)n * (size_t)n;
   *l = (struct layer){.size = n, .speed = speed};
-  if (!flow_create(&l->flow, scene, &plan, status)) return false;
+  if (!flow_create(&l->flow, scene, &stages, status)) return false;
   l->ux = memory_allocate(cells, sizeof *l->ux, "the shear layer", status);
   if (l->ux) l->uy = memory_allocate(cells, sizeof *l->uy, "the shear layer", status);
   if (!l->uy) return false;

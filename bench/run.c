@@ -60,12 +60,12 @@ static bool bench_depth(int size, int depth, const struct bench_report *report, 
   scene.domain.side[SIDE_TOP].velocity[0] = 0.05;
   scene.run.plan.depth = depth;
   scene.run.check = 100;
-  const struct plan plan = plan_of(&scene);
+  const struct stages stages = stages_of(&scene);
   const int steps = report->quick ? 2 * depth : 10 * (int)fmax(1, 2e7 / ((double)size * size * depth)) * depth;
   struct simulation *simulation = NULL;
   struct flow flow = {0};
   double bare[REPEATS], run[REPEATS];
-  bool ok = flow_create(&flow, &scene, &plan, status) && simulation_create(&simulation, &scene, status);
+  bool ok = flow_create(&flow, &scene, &stages, status) && simulation_create(&simulation, &scene, status);
   for (int r = -1; ok && r < REPEATS; r++) {
     bare[r < 0 ? 0 : r] = time_bare(&flow, steps, depth);
     ok = time_run(simulation, steps, &run[r < 0 ? 0 : r], status);

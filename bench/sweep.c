@@ -115,9 +115,9 @@ static void set_waves(struct populations *p)
 static bool subject_create(struct subject *subject, const struct scene *scene, enum way way,
                            const struct blocking *blocking, struct status *status)
 {
-  const struct plan plan = plan_of(scene);
+  const struct stages stages = stages_of(scene);
   *subject = (struct subject){.way = way, .blocking = *blocking};
-  if (!flow_create(&subject->flow, scene, &plan, status)) return false;
+  if (!flow_create(&subject->flow, scene, &stages, status)) return false;
   const struct populations *p = &subject->flow.populations;
   if (way == TWO_ARRAYS && !populations_create(&subject->other, p->nx, p->ny, true, p->precision, status)) return false;
   set_waves(&subject->flow.populations);

@@ -6,7 +6,7 @@
 static void use_mrt(struct scene *scene, double q)
 {
   scene->fluid.collision = COLLISION_MRT;
-  scene->fluid.rates = (struct rates){.nu = rate_from_viscosity(scene->fluid.viscosity), .e = 1.4, .q = q};
+  scene->fluid.rates = (struct rates){.s_nu = rate_from_viscosity(scene->fluid.viscosity), .s_e = 1.4, .s_q = q};
 }
 
 void scene_use_paper_rates(struct scene *scene)
@@ -23,7 +23,7 @@ void scene_use_adaptive(struct scene *scene)
 {
   use_mrt(scene, rate_from_magic(1.0 / 12, scene->fluid.viscosity));
   scene->fluid.collision = COLLISION_ADAPTIVE;
-  if (scene->fluid.rates.q < 1.2) scene->fluid.rates.q_fast = 1.2;
+  if (scene->fluid.rates.s_q < 1.2) scene->fluid.rates.s_q_fast = 1.2;
 }
 
 struct scene scene_box(int nx, int ny, double viscosity, enum sides sides)

@@ -2,7 +2,7 @@
 #ifndef DELBM_TESTS_SCENES_H
 #define DELBM_TESTS_SCENES_H
 
-#include "scene/scene.h"
+#include "model/scene.h"
 
 enum sides { SIDES_PERIODIC, SIDES_CLOSED };
 

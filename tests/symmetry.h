@@ -3,7 +3,7 @@
 #ifndef DELBM_TESTS_SYMMETRY_H
 #define DELBM_TESTS_SYMMETRY_H
 
-#include "scene/scene.h"
+#include "model/scene.h"
 #include "sim/initial.h"
 
 /* A turn or a reflection, as the matrix that acts on displacements from the middle of the box. */

@@ -104,12 +104,13 @@ Test(team, keeps_its_first_failure)
   struct team team = {0};
   status_fail(&first, DELBM_FAILED, "first");
   status_fail(&second, DELBM_IO, "second");
-  team_decide(&team, TEAM_MOVED);
-  cr_expect_not(team.stop[TEAM_MOVED]);
+  bool leave = true;
+  team_decide(&team, &leave);
+  cr_expect_not(leave);
   team_fail(&team, &first);
   team_fail(&team, &second);
-  team_decide(&team, TEAM_MOVED);
-  cr_expect(team.stop[TEAM_MOVED]);
+  team_decide(&team, &leave);
+  cr_expect(leave);
   cr_expect_eq(team.first.code, DELBM_FAILED);
   cr_expect_str_eq(team.first.message, "first");
 }

@@ -44,8 +44,8 @@ static void populations_after(const struct scene *scene, const struct blocking *
 {
   struct status status;
   struct flow flow;
-  const struct plan plan = plan_of(scene);
-  cr_assert(flow_create(&flow, scene, &plan, &status));
+  const struct stages stages = stages_of(scene);
+  cr_assert(flow_create(&flow, scene, &stages, &status));
   stir(&flow.populations);
   for (int step = 0; step < STEPS;) {
     const int block = blocking->depth < STEPS - step ? blocking->depth : STEPS - step;

@@ -1,9 +1,9 @@
 /* Contact: overlap areas, the force law, and whole impacts of discs with discs and walls. */
+#include "case/case_overlaps.h"
 #include "contact/law.h"
 #include "contact/lens.h"
 #include "contact/overlap.h"
 #include "drive.h"
-#include "scene/scene_overlaps.h"
 #include "scenes.h"
 #include "sim/contact_memory.h"
 
@@ -756,7 +756,7 @@ static size_t overlaps_one_by_one(const struct scene *scene, double *depth)
 Test(overlap, at_the_start_is_found_between_all_discs_and_with_all_sides)
 {
   struct scene scene = scene_box(50, 40, 0.05, SIDES_PERIODIC);
-  struct scene_overlaps found;
+  struct case_overlaps found;
   struct status status;
   double expected = 0, sum = 0;
   scene.domain.side[SIDE_BOTTOM].type = scene.domain.side[SIDE_TOP].type = SIDE_WALL;
@@ -764,12 +764,12 @@ Test(overlap, at_the_start_is_found_between_all_discs_and_with_all_sides)
     scene_add_disc(&scene, 1 + k % 7, 1, fmod(17.3 * k, 50), fmod(11.9 * k, 40))->motion =
         k % 3 ? DISC_FREE : DISC_FIXED;
   const size_t count = overlaps_one_by_one(&scene, &expected);
-  cr_assert(scene_overlaps_find(&scene, scene.particles.count, &found, &status));
+  cr_assert(case_overlaps_find(&scene, scene.particles.count, &found, &status));
   for (size_t k = 0; k < found.count; k++) sum += found.list[k].depth;
   cr_expect_gt(count, 50);
   cr_expect_eq(found.count, count, "%zu, not %zu", found.count, count);
   cr_expect_float_eq(sum, expected, 1e-9);
-  scene_overlaps_clear(&found);
+  case_overlaps_clear(&found);
   scene_clear(&scene);
 }
 

@@ -188,8 +188,8 @@ Test(divergence, of_cells_too_coarse_for_the_flow_names_the_grid_reynolds_number
   struct simulation_report report;
   struct status status;
   scene.fluid.collision = COLLISION_BGK;
-  scene.fluid.rates.e = scene.fluid.rates.q = scene.fluid.rates.nu;
-  scene.fluid.rates.q_fast = 0;
+  scene.fluid.rates.s_e = scene.fluid.rates.s_q = scene.fluid.rates.s_nu;
+  scene.fluid.rates.s_q_fast = 0;
   scene.domain.side[SIDE_TOP].velocity[0] = 0.1;
   diverge(&scene, 20000, &status, &report);
   expect_words(status.message, "the grid Reynolds number (of one cell) is 250, above 10", true);

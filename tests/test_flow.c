@@ -26,7 +26,7 @@ Test(channel, poiseuille_flow_has_the_slip_of_its_magic_parameter_and_no_other_e
     for (int m = 0; m < 3; m++) {
       const double viscosity = 0.1, force = 1e-6;
       struct scene scene = channel(height, viscosity, along_x);
-      scene.fluid.rates.q = rate_from_magic(magics[m], viscosity);
+      scene.fluid.rates.s_q = rate_from_magic(magics[m], viscosity);
       scene.fluid.force[along_x ? 0 : 1] = force;
       struct simulation *simulation = start(&scene);
       advance(simulation, 20000);

@@ -255,7 +255,7 @@ static struct summary some_summary(const struct scene *scene)
                           .seconds = 2,
                           .report = {.threads = 3,
                                      .kernel = "plain",
-                                     .plan = "16",
+                                     .blocking = "16",
                                      .binding = "unbound",
                                      .mass_drift = 0.5,
                                      .momentum_drift = NAN}};

@@ -1,8 +1,8 @@
 /* Random scenes, many of them absurd: each is refused with a message that names its key, or it runs, and then mass and
  * momentum are held and every number is finite, or it says that it has diverged. The seed is printed;
  * DELBM_RANDOM_SEED gives another one, DELBM_RANDOM_SCENES another number of scenes. */
+#include "case/case_file.h"
 #include "drive.h"
-#include "scene/scene_file.h"
 #include "scenes.h"
 #include "sim/footprint.h"
 
@@ -143,7 +143,7 @@ static void put_scene(FILE *to, gsl_rng *random)
 
 enum fate { REFUSED, DIVERGED, HELD };
 
-static void expect_key_named(const struct scene_errors *errors, const char *text)
+static void expect_key_named(const struct case_errors *errors, const char *text)
 {
   for (size_t k = 0; k < errors->count; k++) {
     const char *key = strstr(errors->lines[k], ": ");
@@ -207,20 +207,20 @@ static enum fate try_case(const char *text)
 {
   char path[64];
   struct scene scene;
-  struct scene_errors errors = {0};
+  struct case_errors errors = {0};
   struct status status;
   enum fate fate = REFUSED;
   const int descriptor = memfd_create("case", 0);
   cr_assert(descriptor >= 0 && write(descriptor, text, strlen(text)) == (ssize_t)strlen(text));
   snprintf(path, sizeof path, "/proc/self/fd/%d", descriptor);
-  if (scene_read(&scene, path, NULL, 0, &errors, &status)) {
+  if (case_read(&scene, path, NULL, 0, &errors, &status)) {
     fate = run(&scene, text);
     scene_clear(&scene);
   } else {
     cr_expect_eq(status.code, DELBM_INVALID, "%s\n%s", status.message, text);
     expect_key_named(&errors, text);
   }
-  scene_errors_clear(&errors);
+  case_errors_clear(&errors);
   close(descriptor);
   return fate;
 }

@@ -5,8 +5,8 @@
 #include "shell.h"
 
 #include "base/clock.h"
+#include "case/case_write.h"
 #include "output/checkpoint.h"
-#include "scene/scene_write.h"
 
 #include <math.h>
 #include <omp.h>
@@ -193,13 +193,13 @@ Test(checkpoint, of_another_case_is_known_and_of_another_length_is_not)
   struct scene scene = scene_crowd(100, 100, 7, 16, 0.9);
   struct status status;
   uint32_t first, second;
-  cr_assert(scene_fingerprint(&scene, &first, &status));
+  cr_assert(case_fingerprint(&scene, &first, &status));
   scene.run.steps = 17;
   scene.output.every = 3;
-  cr_assert(scene_fingerprint(&scene, &second, &status));
+  cr_assert(case_fingerprint(&scene, &second, &status));
   cr_expect_eq(first, second);
   scene.contact.alpha = nextafter(scene.contact.alpha, 1);
-  cr_assert(scene_fingerprint(&scene, &second, &status));
+  cr_assert(case_fingerprint(&scene, &second, &status));
   cr_expect_neq(first, second);
 }
 
@@ -239,7 +239,7 @@ Test(checkpoint, of_a_case_in_other_units_is_of_another_case)
   struct status status;
   for (int k = 0; k < COUNT; k++) {
     scene.units = units[k];
-    cr_assert(scene_fingerprint(&scene, &sums[k], &status));
+    cr_assert(case_fingerprint(&scene, &sums[k], &status));
     for (int before = 0; before < k; before++) cr_expect_neq(sums[k], sums[before], "%d and %d", before, k);
   }
   scene_clear(&scene);

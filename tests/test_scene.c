@@ -1,9 +1,9 @@
-#include "scene/scene.h"
-#include "scene/scene_errors.h"
-#include "scene/scene_file.h"
-#include "scene/scene_keys.h"
-#include "scene/scene_value.h"
-#include "scene/scene_write.h"
+#include "case/case_errors.h"
+#include "case/case_file.h"
+#include "case/case_keys.h"
+#include "case/case_value.h"
+#include "case/case_write.h"
+#include "model/scene.h"
 
 #include <criterion/criterion.h>
 #include <dirent.h>
@@ -19,7 +19,7 @@ static const char minimal[] = "domain: {size: [100, 200]}\nfluid: {viscosity: 0.
 /* A case read from text in a temporary file. */
 struct reading {
   struct scene scene;
-  struct scene_errors errors;
+  struct case_errors errors;
   struct status status;
   bool valid;
 };
@@ -33,7 +33,7 @@ static struct reading read_sized(const char *text, size_t size, char *const set[
   FILE *file = fdopen(descriptor, "w");
   cr_assert_eq(fwrite(text, 1, size, file), size);
   cr_assert_eq(fclose(file), 0);
-  reading.valid = scene_read(&reading.scene, path, set, set_count, &reading.errors, &reading.status);
+  reading.valid = case_read(&reading.scene, path, set, set_count, &reading.errors, &reading.status);
   unlink(path);
   return reading;
 }
@@ -52,7 +52,7 @@ static struct reading read_with(const char *text, char *set)
 static struct scene scene_with(char *set)
 {
   struct reading reading = read_with(minimal, set);
-  if (!reading.valid) scene_errors_print(&reading.errors, stderr);
+  if (!reading.valid) case_errors_print(&reading.errors, stderr);
   cr_assert(reading.valid, "%s: %s", set, reading.status.message);
   return reading.scene;
 }
@@ -60,7 +60,7 @@ static struct scene scene_with(char *set)
 static void release(struct reading *reading)
 {
   scene_clear(&reading->scene);
-  scene_errors_clear(&reading->errors);
+  case_errors_clear(&reading->errors);
 }
 
 static char *written(const struct scene *scene)
@@ -68,7 +68,7 @@ static char *written(const struct scene *scene)
   char *text = NULL;
   size_t size;
   FILE *file = open_memstream(&text, &size);
-  cr_assert(scene_write(scene, file));
+  cr_assert(case_write(scene, file));
   cr_assert_eq(fclose(file), 0);
   return text;
 }
@@ -109,9 +109,10 @@ static void expect_same_fluid(const struct scene *a, const struct scene *b)
   cr_expect_eq(a->fluid.viscosity, b->fluid.viscosity);
   cr_expect(same_pair(a->fluid.force, b->fluid.force));
   cr_expect_eq(a->fluid.collision, b->fluid.collision);
-  cr_expect_eq(a->fluid.rates.nu, b->fluid.rates.nu);
-  cr_expect_eq(a->fluid.rates.e, b->fluid.rates.e);
-  cr_expect_eq(a->fluid.rates.q, b->fluid.rates.q, "rates.q: %.17g and %.17g", a->fluid.rates.q, b->fluid.rates.q);
+  cr_expect_eq(a->fluid.rates.s_nu, b->fluid.rates.s_nu);
+  cr_expect_eq(a->fluid.rates.s_e, b->fluid.rates.s_e);
+  cr_expect_eq(a->fluid.rates.s_q, b->fluid.rates.s_q, "rates.s_q: %.17g and %.17g", a->fluid.rates.s_q,
+               b->fluid.rates.s_q);
   cr_expect_eq(a->fluid.precision, b->fluid.precision);
   cr_expect_eq(a->fluid.zero_flux, b->fluid.zero_flux);
   cr_expect_eq(!a->fluid.kernel, !b->fluid.kernel);
@@ -152,7 +153,7 @@ static void expect_round_trip(const struct scene *scene)
 {
   char *text = written(scene);
   struct reading again = read_text(text);
-  if (!again.valid) scene_errors_print(&again.errors, stderr);
+  if (!again.valid) case_errors_print(&again.errors, stderr);
   cr_assert(again.valid, "%s", text);
   expect_same_scene(scene, &again.scene);
   char *second = written(&again.scene);
@@ -165,7 +166,7 @@ static void expect_round_trip(const struct scene *scene)
 static void expect_round_trip_of(const char *text)
 {
   struct reading reading = read_text(text);
-  if (!reading.valid) scene_errors_print(&reading.errors, stderr);
+  if (!reading.valid) case_errors_print(&reading.errors, stderr);
   cr_assert(reading.valid, "%s", text);
   expect_round_trip(&reading.scene);
   release(&reading);
@@ -212,7 +213,7 @@ Test(scene, full_case_gives_domain_and_fluid)
 {
   struct reading reading = read_text(full);
   const struct scene *scene = &reading.scene;
-  scene_errors_print(&reading.errors, stderr);
+  case_errors_print(&reading.errors, stderr);
   cr_assert(reading.valid);
   cr_expect_str_eq(scene->title, "All keys: \"one\" # two\n\u00fc\u2028\a");
   cr_expect_eq(scene->domain.size[0], 120);
@@ -222,9 +223,9 @@ Test(scene, full_case_gives_domain_and_fluid)
   cr_expect_eq(scene->domain.side[SIDE_BOTTOM].velocity[1], 0.1);
   cr_expect_eq(scene->domain.side[SIDE_TOP].type, SIDE_OUTLET);
   cr_expect_eq(scene->fluid.force[0], 1e-5);
-  cr_expect(fabs(scene->fluid.rates.nu - 1.25) < 1e-15);
-  cr_expect_eq(scene->fluid.rates.e, 1.1);
-  cr_expect_eq(scene->fluid.rates.q, 0.7);
+  cr_expect(fabs(scene->fluid.rates.s_nu - 1.25) < 1e-15);
+  cr_expect_eq(scene->fluid.rates.s_e, 1.1);
+  cr_expect_eq(scene->fluid.rates.s_q, 0.7);
   cr_expect_not(scene->fluid.zero_flux);
   cr_expect_str_eq(scene->fluid.kernel, "reference");
   cr_expect_eq(scene->coupling.form, FORM_UNIFIED);
@@ -272,7 +273,8 @@ Test(scene, minimal_case_has_documented_defaults)
   cr_expect_str_eq(scene->title, "");
   for (int s = 0; s < SIDE_COUNT; s++) cr_expect_eq(scene->domain.side[s].type, SIDE_WALL);
   cr_expect(scene->fluid.collision == COLLISION_ADAPTIVE && scene->fluid.precision == PRECISION_DOUBLE);
-  cr_expect(scene->fluid.rates.e == 1.4 && scene->fluid.rates.q == rate_from_magic(1.0 / 12, scene->fluid.viscosity));
+  cr_expect(scene->fluid.rates.s_e == 1.4 &&
+            scene->fluid.rates.s_q == rate_from_magic(1.0 / 12, scene->fluid.viscosity));
   cr_expect(!scene->fluid.zero_flux && !scene->fluid.kernel);
   cr_expect(scene->coupling.form == FORM_MIDPOINT && scene->coupling.solve == SOLVE_IMPLICIT);
   cr_expect(scene->particles.count == 0 && !scene->particles.fill.present);
@@ -331,20 +333,20 @@ Test(scene, written_case_is_marked_with_the_version_and_keeps_short_numbers)
 Test(scene, rates_follow_the_collision)
 {
   struct scene bgk = scene_with("fluid={viscosity: 0.1, collision: bgk}");
-  cr_expect(bgk.fluid.rates.e == bgk.fluid.rates.nu && bgk.fluid.rates.q == bgk.fluid.rates.nu);
+  cr_expect(bgk.fluid.rates.s_e == bgk.fluid.rates.s_nu && bgk.fluid.rates.s_q == bgk.fluid.rates.s_nu);
   struct scene trt = scene_with("fluid={viscosity: 0.1, collision: trt}");
-  cr_expect(trt.fluid.rates.e == trt.fluid.rates.nu && trt.fluid.rates.q == rate_from_magic(0.1875, 0.1));
+  cr_expect(trt.fluid.rates.s_e == trt.fluid.rates.s_nu && trt.fluid.rates.s_q == rate_from_magic(0.1875, 0.1));
   struct scene nested = scene_with("fluid={viscosity: 0.1, collision: trt, rates: {magic: 0.25}}");
-  cr_expect_eq(nested.fluid.rates.q, rate_from_magic(0.25, 0.1));
+  cr_expect_eq(nested.fluid.rates.s_q, rate_from_magic(0.25, 0.1));
   struct scene mrt = scene_with("fluid={viscosity: 0.1, collision: mrt, magic: 0.25, rates: {e: 1.3}}");
-  cr_expect(mrt.fluid.rates.e == 1.3 && mrt.fluid.rates.q == rate_from_magic(0.25, 0.1));
+  cr_expect(mrt.fluid.rates.s_e == 1.3 && mrt.fluid.rates.s_q == rate_from_magic(0.25, 0.1));
   struct scene adaptive = scene_with("fluid={viscosity: 0.01, rates: {e: 1.3}}");
-  cr_expect(adaptive.fluid.rates.q == rate_from_magic(1.0 / 12, 0.01) && adaptive.fluid.rates.q_fast == 1.2);
-  cr_expect(adaptive.fluid.collision == COLLISION_ADAPTIVE && adaptive.fluid.rates.e == 1.3);
+  cr_expect(adaptive.fluid.rates.s_q == rate_from_magic(1.0 / 12, 0.01) && adaptive.fluid.rates.s_q_fast == 1.2);
+  cr_expect(adaptive.fluid.collision == COLLISION_ADAPTIVE && adaptive.fluid.rates.s_e == 1.3);
   struct scene thick = scene_with("fluid={viscosity: 0.2}"); /* slow fluid relaxes q faster than fast fluid would */
-  cr_expect(thick.fluid.rates.q == rate_from_magic(1.0 / 12, 0.2) && thick.fluid.rates.q_fast == 0);
+  cr_expect(thick.fluid.rates.s_q == rate_from_magic(1.0 / 12, 0.2) && thick.fluid.rates.s_q_fast == 0);
   struct scene given = scene_with("fluid={viscosity: 0.01, rates: {q: 1.1}}");
-  cr_expect(given.fluid.collision == COLLISION_MRT && given.fluid.rates.q == 1.1 && given.fluid.rates.q_fast == 0);
+  cr_expect(given.fluid.collision == COLLISION_MRT && given.fluid.rates.s_q == 1.1 && given.fluid.rates.s_q_fast == 0);
   scene_clear(&adaptive);
   scene_clear(&thick);
   scene_clear(&given);
@@ -406,7 +408,7 @@ Test(scene, later_override_wins_and_reaches_into_sides_and_discs)
                  "particles.discs.0.radius=6",
                  "particles.discs.0.density=3"};
   struct reading reading = read_sized(minimal, strlen(minimal), set, sizeof set / sizeof set[0]);
-  scene_errors_print(&reading.errors, stderr);
+  case_errors_print(&reading.errors, stderr);
   cr_assert(reading.valid);
   cr_expect_eq(reading.scene.domain.side[SIDE_TOP].velocity[0], 0.2);
   cr_expect_eq(reading.scene.particles.discs[0].radius, 6);
@@ -492,12 +494,12 @@ Test(scene, errors_in_file_and_overrides_are_reported_together)
 Test(scene, missing_file_is_an_input_error)
 {
   struct scene scene;
-  struct scene_errors errors = {0};
+  struct case_errors errors = {0};
   struct status status;
-  cr_expect_not(scene_read(&scene, "/nonexistent/case.yaml", NULL, 0, &errors, &status));
+  cr_expect_not(case_read(&scene, "/nonexistent/case.yaml", NULL, 0, &errors, &status));
   cr_expect_eq(status.code, DELBM_IO);
   cr_expect_str_eq(status.message, "cannot open /nonexistent/case.yaml: No such file or directory");
-  cr_expect_not(scene_read(&scene, "/tmp", NULL, 0, &errors, &status));
+  cr_expect_not(case_read(&scene, "/tmp", NULL, 0, &errors, &status));
   cr_expect_eq(status.code, DELBM_IO);
   cr_expect_str_eq(status.message, "cannot open /tmp/case.yaml: No such file or directory");
   cr_expect_eq(errors.count, 0);
@@ -514,9 +516,9 @@ static void make_file(const char *path)
 static void expect_name(const char *path, const char *name)
 {
   struct scene scene;
-  struct scene_errors errors = {0};
+  struct case_errors errors = {0};
   struct status status;
-  cr_assert(scene_read(&scene, path, NULL, 0, &errors, &status), "%s", path);
+  cr_assert(case_read(&scene, path, NULL, 0, &errors, &status), "%s", path);
   cr_expect_str_eq(scene.name, name, "%s: %s", path, scene.name);
   scene_clear(&scene);
 }
@@ -630,7 +632,7 @@ Test(scene, errors_beyond_the_limit_are_counted)
   struct reading reading = read_sized(text, size, NULL, 0);
   cr_expect_not(reading.valid);
   cr_expect_eq(reading.errors.count, SCENE_ERRORS_KEPT);
-  cr_expect_eq(scene_errors_total(&reading.errors), WRONG);
+  cr_expect_eq(case_errors_total(&reading.errors), WRONG);
   free(text);
   release(&reading);
 }
@@ -668,7 +670,7 @@ Test(scene, key_reference_has_every_key)
   char *text = NULL;
   size_t size, count;
   FILE *file = open_memstream(&text, &size);
-  scene_print_keys(file);
+  case_print_keys(file);
   fclose(file);
   const struct key *keys = key_table(&count);
   for (size_t i = 0; i < count; i++) cr_expect(strstr(text, keys[i].path), "%s", keys[i].path);
@@ -787,7 +789,7 @@ Test(scene, limits_between_keys_are_refused_from_where_they_are_passed)
       char set[512];
       snprintf(set, sizeof set, "%s=%s", limits[i].key, bad ? limits[i].bad : limits[i].good);
       struct reading reading = read_with(furnished, set);
-      if (reading.valid == bad) scene_errors_print(&reading.errors, stderr);
+      if (reading.valid == bad) case_errors_print(&reading.errors, stderr);
       cr_expect_eq(reading.valid, !bad, "%s", set);
       release(&reading);
     }
@@ -846,19 +848,19 @@ static void expect_errors(const char *name)
   char path[512], *text = NULL;
   size_t size;
   struct scene scene;
-  struct scene_errors errors = {0};
+  struct case_errors errors = {0};
   struct status status;
   snprintf(path, sizeof path, "%s.yaml", name);
-  cr_expect_not(scene_read(&scene, path, NULL, 0, &errors, &status), "%s is taken as valid", path);
+  cr_expect_not(case_read(&scene, path, NULL, 0, &errors, &status), "%s is taken as valid", path);
   cr_expect_eq(status.code, DELBM_INVALID, "%s: %s", path, status.message);
   FILE *file = open_memstream(&text, &size);
-  scene_errors_print(&errors, file);
+  case_errors_print(&errors, file);
   fclose(file);
   char *expected = read_expected(name);
   cr_expect_str_eq(text, expected, "%s gives\n%sinstead of\n%s", path, text, expected);
   free(expected);
   free(text);
-  scene_errors_clear(&errors);
+  case_errors_clear(&errors);
 }
 
 static bool strip(char *name, const char *extension)
@@ -888,16 +890,16 @@ Test(scene, broken_cases_get_the_expected_errors, .timeout = 60 * SLOWNESS)
 
 Test(errors, beyond_those_kept_are_counted_in_a_last_line)
 {
-  struct scene_errors errors = {0};
+  struct case_errors errors = {0};
   char *text = NULL;
   size_t size = 0;
-  for (int k = 0; k < SCENE_ERRORS_KEPT + 3; k++) scene_errors_add(&errors, "error %d", k);
+  for (int k = 0; k < SCENE_ERRORS_KEPT + 3; k++) case_errors_add(&errors, "error %d", k);
   FILE *file = open_memstream(&text, &size);
   cr_assert(file);
-  scene_errors_print(&errors, file);
+  case_errors_print(&errors, file);
   cr_assert_eq(fclose(file), 0);
-  cr_expect_eq(scene_errors_total(&errors), SCENE_ERRORS_KEPT + 3);
+  cr_expect_eq(case_errors_total(&errors), SCENE_ERRORS_KEPT + 3);
   cr_expect(strstr(text, "error 999\nand 3 more\n"), "%s", text + size - 40);
   free(text);
-  scene_errors_clear(&errors);
+  case_errors_clear(&errors);
 }

@@ -118,7 +118,7 @@ static void fast_step(struct populations *p, struct boundary *boundary, const st
     double sum[2] = {0, 0};
     populations_cells(p, 0, y, a);
     cover_row(cover, y, p->precision, buffers);
-    const struct row_cover row = {b[0], b[1], b[2]};
+    const struct solid_row row = {b[0], b[1], b[2]};
     sweep_row *kernel =
         s->form < 0 ? s->kernel->fluid[s->adaptive][s->force] : s->kernel->discs[s->form][s->adaptive][s->force];
     kernel(a, NX, c, s->form < 0 ? NULL : &row, sum);
@@ -167,9 +167,9 @@ static double run_setting(const struct setting *s, unsigned long seed)
   random_cover(&cover, random);
   random_state(&p, &r, random);
   boundary_reset(&boundary, &p);
-  struct sweep_constants c = {.rates = {.nu = 1.7, .e = 1.4, .q = 1.2}};
+  struct sweep_constants c = {.rates = {.s_nu = 1.7, .s_e = 1.4, .s_q = 1.2}};
   /* the speeds of the random state are about this viscosity of 0.006, where the rate changes most */
-  if (s->adaptive) c.rates = (struct rates){.nu = 1.93, .e = 1.4, .q = 0.6, .q_fast = 1.2};
+  if (s->adaptive) c.rates = (struct rates){.s_nu = 1.93, .s_e = 1.4, .s_q = 0.6, .s_q_fast = 1.2};
   if (s->force) {
     c.force[0] = 1e-3, c.force[1] = -2e-3;
     c.uniform[0] = -1e-4, c.uniform[1] = 3e-4;

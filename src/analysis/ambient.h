@@ -9,7 +9,7 @@
 #ifndef DELBM_ANALYSIS_AMBIENT_H
 #define DELBM_ANALYSIS_AMBIENT_H
 
-#include "scene/scene.h"
+#include "model/scene.h"
 
 enum ambient_kind { AMBIENT_STREAM, AMBIENT_REST, AMBIENT_MEAN };
 

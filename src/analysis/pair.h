@@ -5,7 +5,7 @@
 #define DELBM_ANALYSIS_PAIR_H
 
 #include "analysis/history.h"
-#include "scene/scene.h"
+#include "model/scene.h"
 
 /* Speeds this close, as a part of the faster, count as equal. */
 static const double pair_even = 0.02;

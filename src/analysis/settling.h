@@ -25,7 +25,7 @@
 
 #include "analysis/fit.h"
 #include "analysis/history.h"
-#include "scene/scene.h"
+#include "model/scene.h"
 
 /* Part of the speed of the interface at which a bed may still give way. */
 static const double settling_rest = 0.2;

@@ -42,7 +42,7 @@ enum delbm_code api_leave(struct api_call *call, bool good)
   return good ? tell(call->out, DELBM_OK, "") : tell(call->out, call->status.code, call->status.message);
 }
 
-enum delbm_code api_leave_case(struct api_call *call, bool good, const struct scene_errors *errors)
+enum delbm_code api_leave_case(struct api_call *call, bool good, const struct case_errors *errors)
 {
   struct delbm_status *out = call->out;
   const enum delbm_code code = api_leave(call, good);

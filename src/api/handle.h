@@ -3,8 +3,8 @@
 #define DELBM_API_HANDLE_H
 
 #include "base/c_locale.h"
+#include "case/case_errors.h"
 #include "delbm/delbm.h"
-#include "scene/scene_errors.h"
 #include "sim/simulation.h"
 
 /* A disc that a callback drives. */
@@ -38,7 +38,7 @@ bool api_enter(struct api_call *call, const struct delbm_simulation *simulation,
 enum delbm_code api_leave(struct api_call *call, bool good);
 
 /* The same for a case with errors, if there are any: as many of them as there is room for. */
-enum delbm_code api_leave_case(struct api_call *call, bool good, const struct scene_errors *errors);
+enum delbm_code api_leave_case(struct api_call *call, bool good, const struct case_errors *errors);
 
 /* Fails unless first .. first + count - 1 are discs. */
 bool api_has_discs(const struct delbm_simulation *simulation, size_t first, size_t count, struct status *status);

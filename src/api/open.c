@@ -1,8 +1,8 @@
 #include "api/description.h"
 #include "api/handle.h"
 #include "base/memory.h"
-#include "scene/scene_file.h"
-#include "scene/scene_write.h"
+#include "case/case_file.h"
+#include "case/case_write.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -17,14 +17,14 @@ struct source {
 static char length_setting[] = "run.steps=0";
 
 static bool read_case(struct scene *scene, const struct source *source, char *const set[], size_t count,
-                      struct scene_errors *errors, struct status *status)
+                      struct case_errors *errors, struct status *status)
 {
-  if (source->path) return scene_read(scene, source->path, set, count, errors, status);
-  return scene_read_text(scene, &source->text, set, count, errors, status);
+  if (source->path) return case_read(scene, source->path, set, count, errors, status);
+  return case_read_text(scene, &source->text, set, count, errors, status);
 }
 
 static bool read_with_length(struct scene *scene, const struct source *source, const char *const settings[],
-                             size_t count, struct scene_errors *errors, struct status *status)
+                             size_t count, struct case_errors *errors, struct status *status)
 {
   char **set = memory_allocate(count + 1, sizeof *set, "the settings", status);
   if (!set) return false;
@@ -44,24 +44,24 @@ static bool settings_are_pairs(const char *const settings[], size_t count, struc
 }
 
 static bool open_source(struct delbm_simulation *s, const struct source *source, const char *const settings[],
-                        size_t count, struct scene_errors *errors, struct status *status)
+                        size_t count, struct case_errors *errors, struct status *status)
 {
   return settings_are_pairs(settings, count, status) &&
          read_with_length(&s->scene, source, settings, count, errors, status) &&
-         scene_fingerprint(&s->scene, &s->fingerprint, status) && simulation_create(&s->simulation, &s->scene, status);
+         case_fingerprint(&s->scene, &s->fingerprint, status) && simulation_create(&s->simulation, &s->scene, status);
 }
 
 /* *simulation becomes what was opened, or NULL. */
 static enum delbm_code open_and_leave(struct api_call *call, struct delbm_simulation **simulation,
                                       const struct source *source, const char *const settings[], size_t count)
 {
-  struct scene_errors errors = {0};
+  struct case_errors errors = {0};
   struct delbm_simulation *s = memory_allocate(1, sizeof *s, "a simulation", &call->status);
   const bool good = s && open_source(s, source, settings, count, &errors, &call->status);
   if (!good) delbm_close(s);
   *simulation = good ? s : NULL;
   const enum delbm_code code = api_leave_case(call, good, &errors);
-  scene_errors_clear(&errors);
+  case_errors_clear(&errors);
   return code;
 }
 

@@ -2,12 +2,6 @@
 
 #include <time.h>
 
-const char *stage_name(enum stage stage)
-{
-  static const char *const names[STAGE_COUNT] = {"occupation", "contact", "exchange", "sweep", "boundary", "output"};
-  return names[stage];
-}
-
 double clock_now(void)
 {
   struct timespec now;

@@ -1,7 +1,7 @@
 #include "cli/advice.h"
 
 #include "sim/estimate.h"
-#include "sim/plan.h"
+#include "sim/stages.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -10,11 +10,11 @@
 static void advise_rates(const struct scene *scene)
 {
   const struct rates *rates = &scene->fluid.rates;
-  if (scene->fluid.collision == COLLISION_MRT && rates->q < 0.25 && fabs(rates->e - rates->nu) > 0.1)
+  if (scene->fluid.collision == COLLISION_MRT && rates->s_q < 0.25 && fabs(rates->s_e - rates->s_nu) > 0.1)
     printf(
         "  note: s_q %.3g beside s_e %.3g diverges first of all choices at small viscosity; collision: adaptive is as "
         "accurate in slow flow and goes farther (bench/README.md, stability)\n",
-        rates->q, rates->e);
+        rates->s_q, rates->s_e);
 }
 
 /* Map "density of a settling disc". */

@@ -2,7 +2,7 @@
 #ifndef DELBM_CLI_ADVICE_H
 #define DELBM_CLI_ADVICE_H
 
-#include "scene/scene.h"
+#include "model/scene.h"
 
 /* Prints nothing where nothing is to be said. */
 void print_advice(const struct scene *scene);

@@ -82,7 +82,7 @@ int command_analyse(int argc, char **argv)
   if (!request.directory) return DELBM_USAGE;
   struct scene scene = {0};
   const struct settings none = {0};
-  int code = case_read(&scene, request.directory, &none, NULL);
+  int code = read_case(&scene, request.directory, &none, NULL);
   if (code == DELBM_OK) code = analyse_scene(&scene, &request);
   scene_clear(&scene);
   return code;

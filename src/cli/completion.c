@@ -1,8 +1,8 @@
 /* Completion of command lines, written from the tables of commands, options and keys: a script for bash, which zsh reads
  * too, by its own emulation. Where nothing is offered (CASE, DIR, files) the shell completes names of files. */
+#include "case/case_keys.h"
 #include "cli/commands.h"
 #include "cli/options.h"
-#include "scene/scene_keys.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -4,10 +4,10 @@
 
 #include "base/memory.h"
 #include "base/threads.h"
+#include "case/case_overlaps.h"
+#include "case/case_tree.h"
 #include "contact/law.h"
 #include "fluid/sweep.h"
-#include "scene/scene_overlaps.h"
-#include "scene/scene_tree.h"
 #include "sim/blocked.h"
 #include "sim/estimate.h"
 #include "sim/footprint.h"
@@ -83,12 +83,12 @@ static void print_fluid(const struct scene *scene)
 {
   static const char *const collisions[] = {"bgk", "trt", "mrt", "adaptive"};
   const struct rates *rates = &scene->fluid.rates;
-  const double tau = 1 / rates->nu;
+  const double tau = 1 / rates->s_nu;
   printf("fluid        viscosity %g, tau %.6g; %s with s_nu %.6g, s_e %.6g, s_q %.6g (magic %.4g)",
-         scene->fluid.viscosity, tau, collisions[scene->fluid.collision], rates->nu, rates->e, rates->q,
-         (1 / rates->q - 0.5) * (tau - 0.5));
-  if (rates->q_fast > 0)
-    printf(" where |u| is far below %g cells/step, %g far above", scene->fluid.viscosity, rates->q_fast);
+         scene->fluid.viscosity, tau, collisions[scene->fluid.collision], rates->s_nu, rates->s_e, rates->s_q,
+         (1 / rates->s_q - 0.5) * (tau - 0.5));
+  if (rates->s_q_fast > 0)
+    printf(" where |u| is far below %g cells/step, %g far above", scene->fluid.viscosity, rates->s_q_fast);
   printf("\n");
   if (scene->fluid.zero_flux)
     printf("zero flux    on: a uniform force cancels the mean momentum%s%s\n", scene_is_closed(scene, 0) ? " in x" : "",
@@ -201,14 +201,14 @@ static void print_discs(const struct scene *scene)
 static bool print_overlaps(const struct scene *scene, struct status *status)
 {
   enum { SHOWN = 5 };
-  struct scene_overlaps found;
-  const bool ok = scene_overlaps_find(scene, scene->particles.count, &found, status);
+  struct case_overlaps found;
+  const bool ok = case_overlaps_find(scene, scene->particles.count, &found, status);
   if (ok && found.count > 0)
     printf("  note: %zu overlap%s at the start, which contacts push apart:", found.count, found.count == 1 ? "" : "s");
   for (size_t k = 0; ok && k < found.count && k < SHOWN; k++) {
-    const struct scene_overlap *overlap = &found.list[k];
+    const struct case_overlap *overlap = &found.list[k];
     printf("%s disc %zu and ", k ? ";" : "", overlap->a);
-    if (scene_overlap_is_with_side(overlap))
+    if (case_overlap_is_with_side(overlap))
       printf("the %s side", side_name_text((enum side_name)(overlap->b - overlap_sides)));
     else
       printf("disc %zu", overlap->b);
@@ -216,19 +216,19 @@ static bool print_overlaps(const struct scene *scene, struct status *status)
   }
   if (ok && found.count > SHOWN) printf("; and %zu more", found.count - SHOWN);
   if (ok && found.count > 0) printf("\n");
-  scene_overlaps_clear(&found);
+  case_overlaps_clear(&found);
   return ok;
 }
 
-static void print_contacts(const struct scene *scene, const struct plan *plan)
+static void print_contacts(const struct scene *scene, const struct stages *stages)
 {
-  if (!plan->pairs && !plan->walls) return;
+  if (!stages->pairs && !stages->walls) return;
   printf("contacts     area by %s, stiffness %g, alpha %g, damping %g (%s)\n",
          scene->contact.area == AREA_LENS ? "lens" : "cells", scene->contact.stiffness, scene->contact.alpha,
          scene->contact.damping, scene->contact.damping_form == DAMPING_CRITICAL ? "critical" : "as printed");
   if (scene->contact.substeps > 0)
     printf("sub-steps    %d a step, as the case says\n", scene->contact.substeps);
-  else if (plan->substeps)
+  else if (stages->substeps)
     printf("sub-steps    chosen each step for %g of them a contact; %d at an overlap of one cell\n",
            scene->contact.steps_per_contact, plan_largest_substeps(scene));
   else
@@ -266,30 +266,30 @@ static void print_memory(const struct scene *scene)
     printf("  note: more than the %.4g MiB of this machine; it would not be run here\n", most / mib);
 }
 
-static void print_stages(const struct scene *scene, const struct plan *plan)
+static void print_stages(const struct scene *scene, const struct stages *stages)
 {
   static const char *const occupation[] = {"left out: no discs", "once, before the first step: no disc moves",
                                            "every step"};
   printf("stages\n");
-  printf("  occupation %s\n", occupation[plan->occupation]);
-  printf("  exchange   %s\n", !plan->exchange                       ? "left out: no discs"
-                              : plan->occupation == OCCUPATION_ONCE ? "gather only, for the forces: no disc is free"
-                                                                    : "gather, solve, move");
-  printf("  contact    %s\n", plan->pairs && plan->walls ? "pairs and sides"
-                              : plan->pairs              ? "pairs; no sides: the box is periodic"
-                              : plan->walls              ? "sides; no pairs: one disc"
-                                                         : "left out: nothing can meet");
+  printf("  occupation %s\n", occupation[stages->occupation]);
+  printf("  exchange   %s\n", !stages->exchange                       ? "left out: no discs"
+                              : stages->occupation == OCCUPATION_ONCE ? "gather only, for the forces: no disc is free"
+                                                                      : "gather, solve, move");
+  printf("  contact    %s\n", stages->pairs && stages->walls ? "pairs and sides"
+                              : stages->pairs                ? "pairs; no sides: the box is periodic"
+                              : stages->walls                ? "sides; no pairs: one disc"
+                                                             : "left out: nothing can meet");
   printf("  boundary   %s\n", scene_is_periodic(scene, 0) && scene_is_periodic(scene, 1)
                                   ? "periodic images, with the sweep of each row"
                                   : "with the sweep of each row");
-  printf("  sweep      every step, %s%s\n", plan->exchange ? "with discs in the rows that have any" : "fluid alone",
-         plan->force ? ", with force" : ", no force");
+  printf("  sweep      every step, %s%s\n", stages->exchange ? "with discs in the rows that have any" : "fluid alone",
+         stages->force ? ", with force" : ", no force");
 }
 
-static int print_case(const struct scene *scene, struct scene_errors *notes)
+static int print_case(const struct scene *scene, struct case_errors *notes)
 {
   struct status status;
-  const struct plan plan = plan_of(scene);
+  const struct stages stages = stages_of(scene);
   const struct sweep_kernel *kernel = sweep_find(scene->fluid.kernel, scene->fluid.precision, &status);
   if (!kernel) return report_error(&status);
   char title[TREE_TEXT]; /* whatever a case holds, a terminal is not to obey it */
@@ -300,9 +300,9 @@ static int print_case(const struct scene *scene, struct scene_errors *notes)
   notes_print(notes, "  note: ", stdout);
   print_fluid(scene);
   print_speeds(scene);
-  if (plan.exchange) print_discs(scene);
-  print_contacts(scene, &plan);
-  if (plan.exchange && !print_overlaps(scene, &status)) return report_error(&status);
+  if (stages.exchange) print_discs(scene);
+  print_contacts(scene, &stages);
+  if (stages.exchange && !print_overlaps(scene, &status)) return report_error(&status);
   print_advice(scene);
   char binding[THREADS_TEXT];
   threads_binding(binding);
@@ -310,7 +310,7 @@ static int print_case(const struct scene *scene, struct scene_errors *notes)
          threads_for(scene_cells(scene)), binding, kernel->name);
   print_plan(scene);
   print_memory(scene);
-  print_stages(scene, &plan);
+  print_stages(scene, &stages);
   return DELBM_OK;
 }
 
@@ -327,11 +327,11 @@ int command_info(int argc, char **argv)
     free(settings.items);
     return code;
   }
-  struct scene_errors notes = {0};
+  struct case_errors notes = {0};
   const char *path = option_operand(argc, argv, "CASE");
-  int code = path ? case_read(&scene, path, &settings, &notes) : DELBM_USAGE;
+  int code = path ? read_case(&scene, path, &settings, &notes) : DELBM_USAGE;
   if (code == DELBM_OK) code = print_case(&scene, &notes);
-  scene_errors_clear(&notes);
+  case_errors_clear(&notes);
   scene_clear(&scene);
   free(settings.items);
   return code;

@@ -2,7 +2,7 @@
 
 #include "base/memory.h"
 #include "base/words.h"
-#include "scene/scene_file.h"
+#include "case/case_file.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -86,20 +86,20 @@ int settings_add(struct settings *settings, char *setting, int argc, char **argv
   return DELBM_OK;
 }
 
-int case_read(struct scene *scene, const char *path, const struct settings *settings, struct scene_errors *notes)
+int read_case(struct scene *scene, const char *path, const struct settings *settings, struct case_errors *notes)
 {
-  struct scene_errors errors = {.notes = notes};
+  struct case_errors errors = {.notes = notes};
   struct status status;
-  bool read = scene_read(scene, path, settings->items, settings->count, &errors, &status);
-  if (!read && scene_errors_total(&errors) == 0) report_error(&status);
-  scene_errors_print(&errors, stderr);
-  scene_errors_clear(&errors);
+  bool read = case_read(scene, path, settings->items, settings->count, &errors, &status);
+  if (!read && case_errors_total(&errors) == 0) report_error(&status);
+  case_errors_print(&errors, stderr);
+  case_errors_clear(&errors);
   return read ? DELBM_OK : (int)status.code;
 }
 
-void notes_print(struct scene_errors *notes, const char *before, FILE *file)
+void notes_print(struct case_errors *notes, const char *before, FILE *file)
 {
   for (size_t i = 0; i < notes->count; i++) fprintf(file, "%s%s\n", before, notes->lines[i]);
   if (notes->dropped > 0) fprintf(file, "%s%zu more values are rounded\n", before, notes->dropped);
-  scene_errors_clear(notes);
+  case_errors_clear(notes);
 }

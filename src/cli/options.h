@@ -2,8 +2,8 @@
 #ifndef DELBM_CLI_OPTIONS_H
 #define DELBM_CLI_OPTIONS_H
 
-#include "scene/scene.h"
-#include "scene/scene_errors.h"
+#include "case/case_errors.h"
+#include "model/scene.h"
 
 #include <getopt.h>
 
@@ -30,10 +30,10 @@ int settings_add(struct settings *settings, char *setting, int argc, char **argv
 
 /* Reads the case; prints all errors found. Returns DELBM_OK with the scene filled in, or the exit code. What is taken
  * otherwise than it is written goes into the notes. */
-int case_read(struct scene *scene, const char *path, const struct settings *settings, struct scene_errors *notes);
+int read_case(struct scene *scene, const char *path, const struct settings *settings, struct case_errors *notes);
 
 /* Prints each note behind these words, and releases them. */
-void notes_print(struct scene_errors *notes, const char *before, FILE *file);
+void notes_print(struct case_errors *notes, const char *before, FILE *file);
 
 /* Prints one line about a misused command line; returns DELBM_USAGE. `command` is NULL for `delbm` itself. */
 int usage_error(const char *command, const char *format, ...) __attribute__((format(printf, 2, 3)));

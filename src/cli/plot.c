@@ -111,7 +111,7 @@ int command_plot(int argc, char **argv)
   struct scene scene = {0};
   struct status status;
   const struct settings none = {0};
-  int code = case_read(&scene, request.directory, &none, NULL);
+  int code = read_case(&scene, request.directory, &none, NULL);
   if (code == DELBM_OK && !plot_scene(&scene, &request, &status)) code = report_error(&status);
   scene_clear(&scene);
   return code;

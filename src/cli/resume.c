@@ -69,13 +69,13 @@ static int resume_scene(const struct scene *scene, const struct resume_request *
 static int resume_directory(const struct resume_request *options)
 {
   struct scene scene = {0};
-  struct scene_errors notes = {0};
+  struct case_errors notes = {0};
   struct status status;
   char *path = file_join(options->directory, "case.yaml", &status);
   if (!path) return report_error(&status);
-  int code = case_read(&scene, path, &options->settings, &notes);
+  int code = read_case(&scene, path, &options->settings, &notes);
   if (code == DELBM_OK && !options->quiet) notes_print(&notes, "delbm: note: ", stderr);
-  scene_errors_clear(&notes);
+  case_errors_clear(&notes);
   if (code == DELBM_OK) code = resume_scene(&scene, options);
   scene_clear(&scene);
   free(path);

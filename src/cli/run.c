@@ -1,8 +1,8 @@
+#include "case/case_keys.h"
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "cli/session.h"
 #include "output/file.h"
-#include "scene/scene_keys.h"
 
 #include <stdlib.h>
 #include <sys/stat.h>
@@ -71,7 +71,7 @@ static int parse_options(int argc, char **argv, struct run_request *options)
       print_help();
       return DELBM_OK;
     case OPTION_HELP_KEYS:
-      scene_print_keys(stdout);
+      case_print_keys(stdout);
       return DELBM_OK;
     default:
       return DELBM_USAGE;
@@ -123,10 +123,10 @@ static int run_in_directory(const struct scene *scene, const struct run_request 
 static int run_case(const struct run_request *options)
 {
   struct scene scene = {0};
-  struct scene_errors notes = {0};
-  int code = case_read(&scene, options->path, &options->settings, &notes);
+  struct case_errors notes = {0};
+  int code = read_case(&scene, options->path, &options->settings, &notes);
   if (code == DELBM_OK && !options->quiet) notes_print(&notes, "delbm: note: ", stderr);
-  scene_errors_clear(&notes);
+  case_errors_clear(&notes);
   if (code != DELBM_OK) return code;
   struct status status;
   char *standard = file_join("out", scene.name, &status);

@@ -1,5 +1,6 @@
 #include "cli/session.h"
 
+#include "base/clock.h"
 #include "cli/options.h"
 #include "output/progress.h"
 

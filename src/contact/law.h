@@ -2,7 +2,7 @@
 #ifndef DELBM_CONTACT_LAW_H
 #define DELBM_CONTACT_LAW_H
 
-#include "scene/scene.h"
+#include "model/scene.h"
 
 #include <math.h>
 

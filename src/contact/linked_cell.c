@@ -137,7 +137,7 @@ bool linked_cell_find(struct linked_cell *l, const struct discs *d, struct pair_
 #pragma omp single
   {
     if (!team->failed && !overlap_join(list, l->rows, (size_t)l->cells[1], d->count, &status)) team_fail(team, &status);
-    team_decide(team, TEAM_SEARCHED);
+    team_decide(team, &l->leave);
   }
-  return !team->stop[TEAM_SEARCHED];
+  return !l->leave;
 }

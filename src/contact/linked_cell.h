@@ -19,6 +19,7 @@ struct linked_cell {
   uint32_t *discs;
   uint32_t *cell;          /* of each disc */
   struct pair_batch *rows; /* of each row of cells */
+  bool leave;              /* after the search (team.h) */
 };
 
 /* Cells with an edge of at least `edge`; 0: one largest diameter plus the skin. */

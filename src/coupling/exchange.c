@@ -238,7 +238,7 @@ bool stage_exchange(struct exchange *e, const struct sweep_constants *constants,
 #pragma omp single
   {
     e->has_last = true;
-    team_decide(team, TEAM_EXCHANGED);
+    team_decide(team, &e->leave_unsolved);
   }
-  return !team->stop[TEAM_EXCHANGED];
+  return !e->leave_unsolved;
 }

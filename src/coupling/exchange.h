@@ -73,6 +73,7 @@ struct exchange {
   double *carried; /* implicit: [2 disc + axis] C */
   double *memory;  /* implicit, with light discs: [3 disc + component] p of each disc; else NULL */
   bool has_last;
+  bool leave_unsolved, leave_unmoved; /* after the solve, after the motion (team.h) */
 };
 
 bool exchange_create(struct exchange *exchange, const struct scene *scene, const struct discs *discs,

@@ -2,7 +2,7 @@
  *
  * gather_row  moment_sums over the runs of a row. Moments are formed in the precision of the populations, sums in
  *             double. A run is taken eight cells at a time; beyond its end cells are read too, with a share of zero.
- * paint_row   the row's cover (sweep.h), from left to right, likewise: zeros up to a run, then the run, which is added
+ * paint_row   the solid row (sweep.h), from left to right, likewise: zeros up to a run, then the run, which is added
  *             where another has been.
  * scan_row    the largest speed of a row. What is not finite may escape a maximum, but not the sum formed beside it. */
 #include "base/lanes.h"
@@ -75,7 +75,7 @@ static inline void put(REAL *to, lanes value, bool add)
   *(real_lanes *)to = v;
 }
 
-static inline void put_run(const struct row_cover *row, const struct run *run, const double *share,
+static inline void put_run(const struct solid_row *row, const struct run *run, const double *share,
                            const struct surface_velocity *v, bool add)
 {
   const double vx = v->vx - v->omega * run->ry, vy = v->vy + v->omega * run->rx;
@@ -89,7 +89,7 @@ static inline void put_run(const struct row_cover *row, const struct run *run, c
 }
 
 /* Zeros from x on, in whole vectors, until `end` is reached; returns where they end. */
-static inline int put_zeros(const struct row_cover *row, int x, int end)
+static inline int put_zeros(const struct solid_row *row, int x, int end)
 {
   const lanes zero = {0};
   for (; x < end; x += LANES) {
@@ -100,7 +100,7 @@ static inline int put_zeros(const struct row_cover *row, int x, int end)
   return x;
 }
 
-void KERNEL(paint_row)(const struct row_cover *row, int nx, const struct run *runs, size_t count, const double *share,
+void KERNEL(paint_row)(const struct solid_row *row, int nx, const struct run *runs, size_t count, const double *share,
                        const struct surface_velocity *surface)
 {
   int known = 0;   /* cells before this have a value, */

@@ -19,7 +19,7 @@
 
 #include "base/store.h"
 #include "lattice/d2q9.h"
-#include "scene/scene.h"
+#include "model/scene.h"
 
 #include <stddef.h>
 

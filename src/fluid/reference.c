@@ -48,10 +48,10 @@ static double midpoint_odd(double s_q, double b, double q, double j)
 /* The rate of qx and qy at a velocity. */
 static double rate_of_q(const struct rates *rates, double rho, double ux, double uy)
 {
-  const double viscosity = (1 / rates->nu - 0.5) / 3;
-  if (rates->q_fast == 0) return rates->q;
+  const double viscosity = (1 / rates->s_nu - 0.5) / 3;
+  if (rates->s_q_fast == 0) return rates->s_q;
   const double fast = rho * (ux * ux + uy * uy) / (viscosity * viscosity);
-  return (rates->q + rates->q_fast * fast) / (1 + fast);
+  return (rates->s_q + rates->s_q_fast * fast) / (1 + fast);
 }
 
 /* One cell: (1), (12), (17), with the force of Guo, Zheng & Shi (2002). `b`, `bv`: cover of the cell. */
@@ -66,10 +66,10 @@ static void collide(const double f[Q], const struct sweep_constants *c, enum cou
   moments_equilibrium(rho, m[M_JX], m[M_JY], force_low);
   moments_equilibrium(rho, m[M_JX] + Fx, m[M_JY] + Fy, force_high);
 
-  const double slow = form == FORM_MIDPOINT ? midpoint_even(c->rates.nu, b) / c->rates.nu : 1;
+  const double slow = form == FORM_MIDPOINT ? midpoint_even(c->rates.s_nu, b) / c->rates.s_nu : 1;
   const double keep = form == FORM_OWEN ? 1 - b : slow, u[2] = {(m[M_JX] + Fx / 2) / rho, (m[M_JY] + Fy / 2) / rho};
   const double s_q = rate_of_q(&c->rates, rho, u[0], u[1]);
-  const double nu = keep * c->rates.nu, e = keep * c->rates.e, q = form == FORM_OWEN ? keep * s_q : s_q;
+  const double nu = keep * c->rates.s_nu, e = keep * c->rates.s_e, q = form == FORM_OWEN ? keep * s_q : s_q;
   const double rate[Q] = {0, e, e, 0, q, 0, q, nu, nu};
   double unforced[Q], force[Q], reflected[Q];
   for (int k = 0; k < Q; k++) {

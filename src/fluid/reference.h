@@ -17,7 +17,7 @@ struct reference {
   bool stepped;
 };
 
-/* Per cell B and B v, as row_cover but for the whole box; NULL arrays for fluid alone. */
+/* Per cell B and B v, as solid_row but for the whole box; NULL arrays for fluid alone. */
 struct reference_cover {
   enum coupling_form form;
   const double *b, *bvx, *bvy;

@@ -8,7 +8,7 @@
 #define DELBM_FLUID_SWEEP_H
 
 #include "fluid/populations.h"
-#include "lattice/runs.h"
+#include "fluid/runs.h"
 
 /* What is the same for every cell of a step. */
 struct sweep_constants {
@@ -17,16 +17,16 @@ struct sweep_constants {
   double uniform[2]; /* and per unit volume (zero_flux) */
 };
 
-/* What covers the cells of a row, in the precision of the populations: b[x] = B (weight.h), and B times the velocity of the
+/* The solid in the cells of a row, in the precision of the populations: b[x] = B (weight.h), and B times the velocity of the
  * solid, the sum over owners of w_p B v_p. Zero where no disc is. */
-struct row_cover {
+struct solid_row {
   void *b, *bvx, *bvy;
 };
 
-/* Updates n cells whose populations are read from a[i][0..n-1]. `cover` is NULL for fluid alone. With a force, sum[]
+/* Updates n cells whose populations are read from a[i][0..n-1]. `solid` is NULL for fluid alone. With a force, sum[]
  * takes the momentum of the cells, the mean of before and after the collision and half of the force more: in fluid alone that is
  * what they have afterwards, and inside discs that of the disc; without a force it is left alone. */
-typedef void sweep_row(void *const a[Q], int n, const struct sweep_constants *constants, const struct row_cover *cover,
+typedef void sweep_row(void *const a[Q], int n, const struct sweep_constants *constants, const struct solid_row *solid,
                        double sum[2]);
 
 /* The same for fluid alone without force, from one set of addresses to another. */
@@ -37,15 +37,15 @@ typedef void sweep_row_between(void *const from[Q], void *const to[Q], int n, co
 typedef void gather_row(void *const a[Q], const struct run *runs, size_t count, const double *share,
                         struct moment_sums *sums);
 
-/* The cover of a row of nx cells by `count` runs, from left to right, of discs that move at surface[disc]; up to seven
+/* Fills the solid row of nx cells with `count` runs, from left to right, of discs that move at surface[disc]; up to seven
  * elements past its end are written. */
-typedef void paint_row(const struct row_cover *row, int nx, const struct run *runs, size_t count, const double *share,
+typedef void paint_row(const struct solid_row *row, int nx, const struct run *runs, size_t count, const double *share,
                        const struct surface_velocity *surface);
 
 /* True if the rates depend on how fast the fluid is. */
 static inline bool rates_are_adaptive(const struct rates *rates)
 {
-  return rates->q_fast > 0;
+  return rates->s_q_fast > 0;
 }
 
 /* Largest |j/rho|^2 of n cells; NAN if one is not finite or has no positive density. */

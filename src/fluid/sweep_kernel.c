@@ -47,7 +47,7 @@ enum { FLUID_ALONE = -1 }; /* in place of a form */
 
 static inline __attribute__((always_inline)) void collide_stream(void *const a[Q], void *const to[Q], const int n,
                                                                  const struct sweep_constants *constants,
-                                                                 const struct row_cover *cover, double sum[2],
+                                                                 const struct solid_row *solid, double sum[2],
                                                                  const int form, const bool adaptive, const bool force)
 {
   const bool discs = form >= 0;
@@ -55,14 +55,14 @@ static inline __attribute__((always_inline)) void collide_stream(void *const a[Q
   const REAL *a5 = a[5], *a6 = a[6], *a7 = a[7], *a8 = a[8];
   REAL *to0 = to[0], *to1 = to[1], *to2 = to[2], *to3 = to[3], *to4 = to[4];
   REAL *to5 = to[5], *to6 = to[6], *to7 = to[7], *to8 = to[8];
-  const REAL *restrict cover_b = discs ? cover->b : NULL;
-  const REAL *restrict cover_bvx = discs ? cover->bvx : NULL;
-  const REAL *restrict cover_bvy = discs ? cover->bvy : NULL;
-  const REAL quarter_nu = (REAL)(constants->rates.nu / 4), quarter_e = (REAL)(constants->rates.e / 4);
-  const REAL slow_q = (REAL)(constants->rates.q / 4);
-  const REAL fast_q = (REAL)(constants->rates.q_fast / 4);
-  const double three_nu = 1 / constants->rates.nu - 0.5;
-  const REAL per_speed2 = (REAL)(9 / (three_nu * three_nu));
+  const REAL *restrict solid_b = discs ? solid->b : NULL;
+  const REAL *restrict solid_bvx = discs ? solid->bvx : NULL;
+  const REAL *restrict solid_bvy = discs ? solid->bvy : NULL;
+  const REAL quarter_s_nu = (REAL)(constants->rates.s_nu / 4), quarter_s_e = (REAL)(constants->rates.s_e / 4);
+  const REAL slow_q = (REAL)(constants->rates.s_q / 4);
+  const REAL fast_q = (REAL)(constants->rates.s_q_fast / 4);
+  const double three_viscosity = 1 / constants->rates.s_nu - 0.5;
+  const REAL per_speed2 = (REAL)(9 / (three_viscosity * three_viscosity));
   const REAL gx = (REAL)constants->force[0], gy = (REAL)constants->force[1];
   const REAL zx = (REAL)constants->uniform[0], zy = (REAL)constants->uniform[1];
   const REAL one = 1, two = 2, four = 4, half = (REAL)0.5, quarter = (REAL)0.25;
@@ -84,7 +84,7 @@ static inline __attribute__((always_inline)) void collide_stream(void *const a[Q
     const REAL ux = Jx * inverse, uy = Jy * inverse;
     const REAL Jux = Jx * ux, Juy = Jy * uy;
 
-    const REAL b = discs ? cover_b[x] : 0;
+    const REAL b = discs ? solid_b[x] : 0;
     const REAL speed2 = per_speed2 * (Jux + Juy);
     const REAL quarter_q = adaptive ? (slow_q + fast_q * speed2) / (one + speed2) : slow_q;
     REAL keep = 1, q_q = quarter_q;
@@ -94,12 +94,12 @@ static inline __attribute__((always_inline)) void collide_stream(void *const a[Q
       q_q += b * (half - quarter_q);
     }
     if (form == FORM_MIDPOINT) {
-      const REAL even = one - b + two * b * quarter_nu, odd = one - two * b * quarter_q;
+      const REAL even = one - b + two * b * quarter_s_nu, odd = one - two * b * quarter_q;
       const REAL both = one / (even * odd);
       keep = (one - b) * odd * both;
       q_q = (quarter_q + b * (half - two * quarter_q)) * even * both;
     }
-    const REAL q_nu = keep * quarter_nu, q_e = keep * quarter_e;
+    const REAL q_nu = keep * quarter_s_nu, q_e = keep * quarter_s_e;
 
     const REAL equilibrium = ninth * delta_rho + third * (Jux + Juy);
     REAL quarter_S = q_e * (equilibrium + third * delta_rho - S);
@@ -110,8 +110,8 @@ static inline __attribute__((always_inline)) void collide_stream(void *const a[Q
     REAL half_jx = 0, half_jy = 0;
 
     if (discs) {
-      half_jx = rho * cover_bvx[x] - b * (jx + Fx);
-      half_jy = rho * cover_bvy[x] - b * (jy + Fy);
+      half_jx = rho * solid_bvx[x] - b * (jx + Fx);
+      half_jy = rho * solid_bvy[x] - b * (jy + Fy);
       quarter_tx += sixth * half_jx;
       quarter_ty += sixth * half_jy;
     }
@@ -152,11 +152,11 @@ static inline __attribute__((always_inline)) void collide_stream(void *const a[Q
 
 /* In place f_i* goes to the slot that f_opposite(i) was read from. */
 #define ROW(name, form, adaptive, force)                                                                               \
-  static void name(void *const a[Q], int n, const struct sweep_constants *constants, const struct row_cover *cover,    \
+  static void name(void *const a[Q], int n, const struct sweep_constants *constants, const struct solid_row *solid,    \
                    double sum[2])                                                                                      \
   {                                                                                                                    \
     void *const to[Q] = {a[0], a[3], a[4], a[1], a[2], a[7], a[8], a[5], a[6]};                                        \
-    collide_stream(a, to, n, constants, cover, sum, form, adaptive, force);                                            \
+    collide_stream(a, to, n, constants, solid, sum, form, adaptive, force);                                            \
   }
 ROW(sweep_fluid, FLUID_ALONE, false, false)
 ROW(sweep_fluid_force, FLUID_ALONE, false, true)

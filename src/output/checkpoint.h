@@ -27,7 +27,7 @@ struct checkpoint_head {
   char kernel[CHECKPOINT_KERNEL];
 };
 
-/* Writes the simulation's state. `fingerprint` is the case's (scene_fingerprint). On failure a file that stood at `path`
+/* Writes the simulation's state. `fingerprint` is the case's (case_fingerprint). On failure a file that stood at `path`
  * still stands. */
 bool checkpoint_write(const char *path, uint32_t fingerprint, struct simulation *simulation,
                       const struct run_record *record, struct status *status);

@@ -3,7 +3,7 @@
 #ifndef DELBM_OUTPUT_PLOTS_H
 #define DELBM_OUTPUT_PLOTS_H
 
-#include "scene/scene.h"
+#include "model/scene.h"
 
 enum plot { PLOT_TRAJECTORIES, PLOT_VELOCITIES, PLOT_INTERFACE, PLOT_MIXING, PLOT_STAGES, PLOT_COUNT };
 

@@ -1,12 +1,13 @@
 #include "output/recorder.h"
 
+#include "base/clock.h"
 #include "base/memory.h"
+#include "case/case_write.h"
 #include "output/checkpoint.h"
 #include "output/csv.h"
 #include "output/fields.h"
 #include "output/file.h"
 #include "output/picture.h"
-#include "scene/scene_write.h"
 
 #include <ctype.h>
 #include <dirent.h>
@@ -113,7 +114,7 @@ static bool write_case(const struct recorder *recorder, struct status *status)
   struct replacement file;
   if (!replacement_begin(&file, recorder->case_path, status)) return false;
   errno = 0;
-  if (scene_write(recorder->scene, file.stream)) return replacement_commit(&file, status);
+  if (case_write(recorder->scene, file.stream)) return replacement_commit(&file, status);
   file_fail(status, "write", recorder->case_path, errno);
   replacement_abandon(&file);
   return false;
@@ -187,7 +188,7 @@ static bool create(struct recorder **recorder, const struct scene *scene, const 
                                  .snapshots = {.every = scene->output.fields.every, .recorded = -1},
                                  .checkpoints = {.every = scene->output.checkpoint.every, .recorded = -1}};
   return prepare_paths(*recorder, directory, status) && prepare_velocities(*recorder, status) &&
-         scene_fingerprint(scene, &(*recorder)->fingerprint, status);
+         case_fingerprint(scene, &(*recorder)->fingerprint, status);
 }
 
 static bool destroy_unless(bool good, struct recorder **recorder)

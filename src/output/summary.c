@@ -98,7 +98,7 @@ static struct figures figures_of(const struct summary *summary)
   add_integer(&figures, "threads", report->threads);
   add_text(&figures, "binding", report->binding)->json_only = true;
   add_text(&figures, "kernel", report->kernel);
-  add_text(&figures, "plan", report->plan);
+  add_text(&figures, "plan", report->blocking);
   add_text(&figures, "precision", single ? "single" : "double");
   for (int stage = 0; stage < STAGE_COUNT; stage++)
     add_real(&figures, stage_name((enum stage)stage), report->times.seconds[stage])->group = "stages";

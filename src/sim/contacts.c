@@ -22,8 +22,8 @@ static bool allocate_followed(struct contacts *c, size_t discs, struct status *s
          (c->fy = memory_allocate(discs, sizeof *c->fy, what, status));
 }
 
-bool contacts_create(struct contacts *c, const struct scene *scene, const struct plan *plan, const struct discs *discs,
-                     struct status *status)
+bool contacts_create(struct contacts *c, const struct scene *scene, const struct stages *plan,
+                     const struct discs *discs, struct status *status)
 {
   *c = (struct contacts){
       .scene = scene, .plan = *plan, .law = contact_law_of(scene), .substeps = 1, .most_substeps = 1, .placed = true};
@@ -362,9 +362,9 @@ bool stage_contact(struct contacts *c, const struct occupation *o, const struct 
       prepare_all(c, d, e, false);
       if (check_substeps(c, team)) follow(c, e, d, false);
     }
-    team_decide(team, TEAM_MET);
+    team_decide(team, &c->leave);
   }
-  if (team->stop[TEAM_MET]) return false;
+  if (c->leave) return false;
   if (c->count <= ALONE) return true;
   prepare_all(c, d, e, true);
   if (check_substeps(c, team)) follow(c, e, d, true); /* else all leave at the end of the next stage */

@@ -20,11 +20,11 @@
 #include "contact/law.h"
 #include "contact/linked_cell.h"
 #include "sim/meeting.h"
-#include "sim/plan.h"
+#include "sim/stages.h"
 
 struct contacts {
   const struct scene *scene;
-  struct plan plan;
+  struct stages plan;
   struct contact_law law;
   struct pair_list pairs;
   struct linked_cell linked; /* with search: linked-cell */
@@ -43,9 +43,10 @@ struct contacts {
   double *fx, *fy;      /* [disc] impulse in a sub-step */
   double last_substep;  /* length of the last sub-step; 0 before the first */
   int most_substeps;    /* of any step */
+  bool leave;           /* after the search (team.h) */
 };
 
-bool contacts_create(struct contacts *contacts, const struct scene *scene, const struct plan *plan,
+bool contacts_create(struct contacts *contacts, const struct scene *scene, const struct stages *plan,
                      const struct discs *discs, struct status *status);
 void contacts_destroy(struct contacts *contacts);
 

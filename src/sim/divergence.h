@@ -2,7 +2,7 @@
 #ifndef DELBM_SIM_DIVERGENCE_H
 #define DELBM_SIM_DIVERGENCE_H
 
-#include "scene/scene.h"
+#include "model/scene.h"
 #include "solid/discs.h"
 
 struct divergence {

@@ -3,7 +3,7 @@
 #ifndef DELBM_SIM_ESTIMATE_H
 #define DELBM_SIM_ESTIMATE_H
 
-#include "scene/scene.h"
+#include "model/scene.h"
 
 /* Advised bounds. The relaxation time 1/s_nu, above 1/2, below which errors are hardly damped; the grid Reynolds number
  * |u|/viscosity above which cells are too coarse for the flow. (For speed: scene_advised_speed.) */

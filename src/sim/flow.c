@@ -6,11 +6,11 @@
 #include <omp.h>
 #include <stdlib.h>
 
-bool flow_create(struct flow *f, const struct scene *scene, const struct plan *plan, struct status *status)
+bool flow_create(struct flow *f, const struct scene *scene, const struct stages *stages, struct status *status)
 {
   *f = (struct flow){
       .scene = scene,
-      .force = plan->force,
+      .force = stages->force,
       .adaptive = rates_are_adaptive(&scene->fluid.rates),
       .constants = {.rates = scene->fluid.rates, .force = {scene->fluid.force[0], scene->fluid.force[1]}}};
   const int nx = scene->domain.size[0], ny = scene->domain.size[1];
@@ -26,8 +26,8 @@ bool flow_create(struct flow *f, const struct scene *scene, const struct plan *p
 
 void flow_destroy(struct flow *f)
 {
-  for (int t = 0; f->covers && t < f->threads; t++) cover_destroy(&f->covers[t]);
-  free(f->covers);
+  for (int t = 0; f->solid_rows && t < f->threads; t++) solid_row_destroy(&f->solid_rows[t]);
+  free(f->solid_rows);
   free(f->row_momentum);
   boundary_destroy(&f->boundary);
   populations_destroy(&f->populations);
@@ -37,9 +37,10 @@ bool flow_prepare(struct flow *f, int threads, struct status *status)
 {
   if (f->scene->particles.count == 0 || threads <= f->threads) return true;
   size_t capacity = (size_t)f->threads;
-  if (!memory_grow(&f->covers, &capacity, (size_t)threads, sizeof *f->covers, "the rows' covers", status)) return false;
+  if (!memory_grow(&f->solid_rows, &capacity, (size_t)threads, sizeof *f->solid_rows, "the solid rows", status))
+    return false;
   for (; f->threads < threads; f->threads++)
-    if (!cover_create(&f->covers[f->threads], f->populations.nx, f->kernel, status)) return false;
+    if (!solid_row_create(&f->solid_rows[f->threads], f->populations.nx, f->kernel, status)) return false;
   return true;
 }
 
@@ -51,7 +52,7 @@ static void set_state(struct flow *f, int x, int y, const struct flow_state *sta
   const double *uniform = f->constants.uniform;
   const double jx = rho * (state->velocity[0] - force[0] / 2) - uniform[0] / 2;
   const double jy = rho * (state->velocity[1] - force[1] / 2) - uniform[1] / 2;
-  const double stress = rho / (3 * f->constants.rates.nu);
+  const double stress = rho / (3 * f->constants.rates.s_nu);
   double m[Q], g[Q];
   moments_equilibrium(rho, jx, jy, m);
   m[M_PXX] -= 2 * stress * (du[0][0] - du[1][1]);
@@ -79,7 +80,7 @@ static struct flow_state at_arrays(const void *context, int x, int y)
   return (struct flow_state){.density = arrays->density[at], .velocity = {arrays->ux[at], arrays->uy[at]}};
 }
 
-static double cover_at(const struct flow *f, const void *row, int x)
+static double solid_at(const struct flow *f, const void *row, int x)
 {
   return f->kernel->precision == PRECISION_DOUBLE ? ((const double *)row)[x] : (double)((const float *)row)[x];
 }
@@ -104,7 +105,7 @@ static void set_row(struct flow *f, flow_initial *initial, const void *context, 
                     const struct sweep_discs *discs)
 {
   const int nx = f->populations.nx;
-  const struct row_cover *row = f->covers ? &f->covers[0].row : NULL;
+  const struct solid_row *row = f->solid_rows;
   size_t count = 0;
   const struct run *runs = discs->now ? occupation_row(discs->now, y, &count) : NULL;
   if (count > 0)
@@ -112,7 +113,7 @@ static void set_row(struct flow *f, flow_initial *initial, const void *context, 
   for (int x = 0; (all || count > 0) && x < nx; x++) {
     struct covered covered = {0};
     if (count > 0)
-      covered = (struct covered){cover_at(f, row->b, x), {cover_at(f, row->bvx, x), cover_at(f, row->bvy, x)}};
+      covered = (struct covered){solid_at(f, row->b, x), {solid_at(f, row->bvx, x), solid_at(f, row->bvy, x)}};
     if (!all && covered.bv[0] == 0 && covered.bv[1] == 0) continue;
     const struct flow_state state = mixed(initial(context, x, y), &covered);
     set_state(f, x, y, &state);
@@ -157,9 +158,9 @@ static void sweep_row_at(struct flow *f, int y, const struct sweep_discs *discs)
     f->kernel->fluid[f->adaptive][f->force](a, nx, &f->constants, NULL, momentum);
     return;
   }
-  struct cover *cover = &f->covers[omp_get_thread_num()];
-  f->kernel->paint(&cover->row, nx, runs, count, occupation_band(o, y)->share, discs->exchange->surface);
-  f->kernel->discs[f->scene->coupling.form][f->adaptive][f->force](a, nx, &f->constants, &cover->row, momentum);
+  const struct solid_row *solid = &f->solid_rows[omp_get_thread_num()];
+  f->kernel->paint(solid, nx, runs, count, occupation_band(o, y)->share, discs->exchange->surface);
+  f->kernel->discs[f->scene->coupling.form][f->adaptive][f->force](a, nx, &f->constants, solid, momentum);
 }
 
 /* The uniform force that cancels the mean momentum, along the axes that walls close. That of one step alone, as the force,

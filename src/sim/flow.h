@@ -3,11 +3,12 @@
 #ifndef DELBM_SIM_FLOW_H
 #define DELBM_SIM_FLOW_H
 
-#include "coupling/cover.h"
+#include "coupling/exchange.h"
 #include "fluid/boundary.h"
+#include "fluid/solid_row.h"
 #include "sim/diagnostics.h"
 #include "sim/initial.h"
-#include "sim/plan.h"
+#include "sim/stages.h"
 
 struct flow {
   const struct scene *scene;
@@ -17,13 +18,13 @@ struct flow {
   struct populations populations;
   struct boundary boundary;
   struct sweep_constants constants;
-  double (*row_momentum)[2]; /* after the sweep, of each row; with a force only */
-  double mean_momentum[2];   /* with zero_flux: what the last step left, a cell */
-  struct cover *covers;      /* of each thread */
+  double (*row_momentum)[2];    /* after the sweep, of each row; with a force only */
+  double mean_momentum[2];      /* with zero_flux: what the last step left, a cell */
+  struct solid_row *solid_rows; /* of each thread */
   int threads;
 };
 
-bool flow_create(struct flow *flow, const struct scene *scene, const struct plan *plan, struct status *status);
+bool flow_create(struct flow *flow, const struct scene *scene, const struct stages *stages, struct status *status);
 void flow_destroy(struct flow *flow);
 
 /* Where discs are in a sweep, and where they will be after it; all NULL in a scene without discs. */

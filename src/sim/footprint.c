@@ -32,18 +32,18 @@ static double linked_cells(const struct scene *scene, double reach)
 
 /* What two discs have in common is noted once; with areas by cells in each row that they share, which are no more than the
  * rows of the smaller one. */
-static double bytes_of_contacts(const struct scene *scene, const struct plan *plan)
+static double bytes_of_contacts(const struct scene *scene, const struct stages *stages)
 {
   const double count = (double)scene->particles.count, pair = sizeof(struct near_pair);
   const bool linked = scene->contact.search == SEARCH_LINKED_CELL, by_cells = scene->contact.area == AREA_CELLS;
-  if (!plan->pairs && !plan->walls) return 0;
+  if (!stages->pairs && !stages->walls) return 0;
   double bytes = CONTACTS * count * growth * sizeof(struct contact);
-  if (!plan->pairs) return bytes;
+  if (!stages->pairs) return bytes;
   double notes = PAIRS * count;
   for (size_t i = 0; by_cells && i < scene->particles.count; i++)
     notes += PAIRS * (2 * scene->particles.discs[i].radius + 2);
   bytes += growth * pair * (PAIRS * count + 2 * notes); /* the list; as found, and sorted */
-  if (linked) bytes += linked_cells(scene, plan->reach) * (sizeof(size_t) + sizeof(struct pair_batch));
+  if (linked) bytes += linked_cells(scene, stages->reach) * (sizeof(size_t) + sizeof(struct pair_batch));
   return bytes;
 }
 
@@ -67,13 +67,13 @@ static double bytes_of_program(const struct scene *scene)
 struct footprint footprint_of(const struct scene *scene)
 {
   const int *size = scene->domain.size;
-  const struct plan plan = plan_of(scene);
-  const double tables = plan.occupation == OCCUPATION_EVERY_STEP ? 2 : 1;
+  const struct stages stages = stages_of(scene);
+  const double tables = stages.occupation == OCCUPATION_EVERY_STEP ? 2 : 1;
   const double disc = sizeof(struct disc_spec) + NUMBERS * sizeof(double), velocity = 2 * sizeof(double);
   return (struct footprint){
       .fluid = (double)populations_bytes(size[0], size[1], scene->fluid.precision),
       .discs = tables * occupation_bytes(scene) + disc * (double)scene->particles.count,
-      .contacts = bytes_of_contacts(scene, &plan),
+      .contacts = bytes_of_contacts(scene, &stages),
       .fields = bytes_of_fields(scene),
       .frames = scene->output.frames.every > 0 ? velocity * (double)scene_cells(scene) : 0,
       .program = bytes_of_program(scene),

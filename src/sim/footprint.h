@@ -3,7 +3,7 @@
 #ifndef DELBM_SIM_FOOTPRINT_H
 #define DELBM_SIM_FOOTPRINT_H
 
-#include "scene/scene.h"
+#include "model/scene.h"
 
 /* Bytes, rather more than less. */
 struct footprint {

@@ -98,6 +98,6 @@ bool stage_motion(const struct contacts *c, struct exchange *e, struct discs *d,
     if (!check_disc(c->scene, d, i, step, from, &status)) team_fail(team, &status);
   }
 #pragma omp single
-  team_decide(team, TEAM_MOVED);
-  return !team->stop[TEAM_MOVED];
+  team_decide(team, &e->leave_unmoved);
+  return !e->leave_unmoved;
 }

@@ -3,7 +3,7 @@
 #define DELBM_SIM_SAMPLE_H
 
 #include "base/status.h"
-#include "scene/scene.h"
+#include "model/scene.h"
 
 struct sample_grid {
   int first[2]; /* cell of the first sample */

@@ -1,5 +1,6 @@
 #include "sim/simulation.h"
 
+#include "base/clock.h"
 #include "base/memory.h"
 #include "base/threads.h"
 #include "sim/diagnostics.h"
@@ -14,7 +15,7 @@
 
 struct simulation {
   const struct scene *scene;
-  struct plan plan;
+  struct stages stages;
   struct flow flow;
   struct discs discs;
   struct occupation occupations[2]; /* at the start of the present step, and of the next; one where no disc moves */
@@ -28,6 +29,7 @@ struct simulation {
   int threads; /* of the parallel region */
   double initial_momentum[2];
   double max_mach;
+  bool discs_left_rows; /* of a block: all threads leave the step (team.h) */
   bool torn; /* a block was left unfinished: rows are at different steps, and no sum over them means anything */
 };
 
@@ -54,20 +56,20 @@ static struct occupation *present(struct simulation *s)
 
 static bool create_discs(struct simulation *s, struct status *status)
 {
-  if (!s->plan.exchange) return true;
-  const bool moving = s->plan.occupation == OCCUPATION_EVERY_STEP;
+  if (!s->stages.exchange) return true;
+  const bool moving = s->stages.occupation == OCCUPATION_EVERY_STEP;
   return discs_create(&s->discs, s->scene, status) &&
-         occupation_create(&s->occupations[0], s->scene, &s->discs, s->plan.reach, status) &&
-         (!moving || occupation_create(&s->occupations[1], s->scene, &s->discs, s->plan.reach, status)) &&
+         occupation_create(&s->occupations[0], s->scene, &s->discs, s->stages.reach, status) &&
+         (!moving || occupation_create(&s->occupations[1], s->scene, &s->discs, s->stages.reach, status)) &&
          exchange_create(&s->exchange, s->scene, &s->discs, status) &&
-         contacts_create(&s->contacts, s->scene, &s->plan, &s->discs, status);
+         contacts_create(&s->contacts, s->scene, &s->stages, &s->discs, status);
 }
 
 /* Occupation where the discs are. A stage is shared out among the threads of the region around it, which must be of our
  * own: the caller may be inside one, and only one of its threads may call. */
 static bool paint(struct simulation *s, struct status *status)
 {
-  if (s->plan.exchange) {
+  if (s->stages.exchange) {
 #pragma omp parallel num_threads(threads_for(scene_cells(s->scene)))
     stage_occupation(present(s), &s->discs, &s->team);
   }
@@ -77,7 +79,7 @@ static bool paint(struct simulation *s, struct status *status)
 /* The sums of the first exchange, in a region of our own like the above. */
 static void take_first_sums(struct simulation *s)
 {
-  if (!s->plan.exchange) return;
+  if (!s->stages.exchange) return;
 #pragma omp parallel num_threads(threads_for(scene_cells(s->scene)))
   stage_first_sums(&s->flow, present(s));
 }
@@ -86,7 +88,7 @@ static void take_first_sums(struct simulation *s)
 static struct sweep_discs discs_between_steps(struct simulation *s)
 {
   const struct discs *d = &s->discs;
-  if (!s->plan.exchange) return (struct sweep_discs){0};
+  if (!s->stages.exchange) return (struct sweep_discs){0};
   for (size_t i = 0; i < d->count; i++)
     s->exchange.surface[i] = (struct surface_velocity){d->vx[i], d->vy[i], d->omega[i]};
   return (struct sweep_discs){.now = present(s), .exchange = &s->exchange};
@@ -108,8 +110,8 @@ bool simulation_create(struct simulation **simulation, const struct scene *scene
   *simulation = s;
   if (!s) return false;
   s->scene = scene;
-  s->plan = plan_of(scene);
-  if (!flow_create(&s->flow, scene, &s->plan, status) || !create_discs(s, status)) {
+  s->stages = stages_of(scene);
+  if (!flow_create(&s->flow, scene, &s->stages, status) || !create_discs(s, status)) {
     simulation_destroy(s);
     *simulation = NULL;
     return false;
@@ -157,9 +159,9 @@ static bool discs_stay_within(struct simulation *s, const struct occupation *nex
                   (long long)s->step);
       team_fail(&s->team, &status);
     }
-    team_decide(&s->team, TEAM_KEPT);
+    team_decide(&s->team, &s->discs_left_rows);
   }
-  return !s->team.stop[TEAM_KEPT];
+  return !s->discs_left_rows;
 }
 
 /* One step of these rows, by all threads of the parallel region; false where they are to leave it unfinished. The
@@ -169,8 +171,8 @@ static bool discs_stay_within(struct simulation *s, const struct occupation *nex
 static bool step(struct simulation *s, const struct rows *rows, double *since)
 {
   struct sweep_discs discs = {0};
-  if (s->plan.exchange) {
-    const bool moving = s->plan.occupation == OCCUPATION_EVERY_STEP;
+  if (s->stages.exchange) {
+    const bool moving = s->stages.occupation == OCCUPATION_EVERY_STEP;
     struct occupation *now = present(s), *next = moving ? &s->occupations[!s->present] : now;
     if (!stage_exchange(&s->exchange, &s->flow.constants, now, &s->discs, s->step, &s->team)) return false;
     charge(s, STAGE_EXCHANGE, since);
@@ -214,7 +216,7 @@ static void count_step(struct simulation *s)
 #pragma omp single
   {
     s->step++;
-    if (s->plan.occupation == OCCUPATION_EVERY_STEP) s->present ^= 1;
+    if (s->stages.occupation == OCCUPATION_EVERY_STEP) s->present ^= 1;
   }
 }
 
@@ -265,7 +267,7 @@ static void run_steps(struct simulation *s, int64_t steps)
   const bool blocked = !s->tuning.settled || s->tuning.best.depth > 1;
   if (!blocked)
     run_single_steps(s, steps);
-  else if (s->plan.exchange)
+  else if (s->stages.exchange)
     run_near_blocks(s, steps);
   else
     run_blocks(s, steps);
@@ -354,7 +356,7 @@ static bool store_state(struct simulation *s, struct store *store, struct status
   return store_mark(store, "simulation", status) && store_bytes(store, &s->step, sizeof s->step, status) &&
          store_bytes(store, s->initial_momentum, sizeof s->initial_momentum, status) &&
          store_bytes(store, &s->max_mach, sizeof s->max_mach, status) && flow_store(&s->flow, store, status) &&
-         (!s->plan.exchange ||
+         (!s->stages.exchange ||
           (discs_store(&s->discs, store, status) && exchange_store(&s->exchange, s->discs.count, store, status) &&
            contacts_store(&s->contacts, s->discs.count, store, status))) &&
          store_bytes(store, &s->times, sizeof s->times, status); /* last: they differ from run to run */
@@ -442,7 +444,7 @@ const struct discs *simulation_discs(const struct simulation *s)
 
 const struct occupation *simulation_occupation(const struct simulation *s)
 {
-  return s->plan.exchange ? &s->occupations[s->present] : NULL;
+  return s->stages.exchange ? &s->occupations[s->present] : NULL;
 }
 
 void simulation_fields(struct simulation *s, double *density, double *ux, double *uy)
@@ -490,9 +492,9 @@ void simulation_report(struct simulation *s, struct simulation_report *report)
                                        .mass_drift = s->torn ? NAN : fabs(totals.excess_mass) / cells,
                                        .momentum_drift = momentum_drift(s),
                                        .max_mach = s->max_mach,
-                                       .max_substeps = s->plan.exchange ? s->contacts.most_substeps : 1};
+                                       .max_substeps = s->stages.exchange ? s->contacts.most_substeps : 1};
   for (int axis = 0; axis < 2; axis++) /* with half of the force of the coming step, as in the fields */
     report->mean_velocity[axis] = (momentum[axis] + (mass * force.mass[axis] + cells * force.uniform[axis]) / 2) / mass;
-  tuning_text(&s->tuning, report->plan);
+  tuning_text(&s->tuning, report->blocking);
   threads_binding(report->binding);
 }

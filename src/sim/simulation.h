@@ -4,12 +4,12 @@
 #ifndef DELBM_SIM_SIMULATION_H
 #define DELBM_SIM_SIMULATION_H
 
-#include "base/clock.h"
 #include "base/store.h"
 #include "base/threads.h"
-#include "scene/scene.h"
+#include "model/scene.h"
 #include "sim/initial.h"
 #include "sim/sample.h"
+#include "sim/stages.h"
 #include "solid/discs.h"
 
 struct occupation;
@@ -75,7 +75,7 @@ struct simulation_report {
                                forces, over the fluid's mass; NAN where walls, inlets or outlets exchange momentum */
   double mean_velocity[2];    /* momentum of the fluid over its mass, cells inside discs included, cells/step */
   double max_mach;            /* largest seen at the looks for divergence, and where it diverged */
-  char plan[32];              /* blocking of the sweep in time: off, its depth, or depth x width */
+  char blocking[32];          /* blocking of the sweep in time: off, its depth, or depth x width */
   char binding[THREADS_TEXT]; /* of threads to processors */
   int max_substeps;           /* most sub-steps that a step has taken */
 };

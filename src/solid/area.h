@@ -4,7 +4,7 @@
 #ifndef DELBM_SOLID_AREA_H
 #define DELBM_SOLID_AREA_H
 
-#include "solid/weight.h"
+#include "fluid/weight.h"
 
 #include <stdint.h>
 

@@ -4,7 +4,7 @@
 #define DELBM_SOLID_DISCS_H
 
 #include "base/store.h"
-#include "scene/scene.h"
+#include "model/scene.h"
 
 struct discs {
   size_t count;

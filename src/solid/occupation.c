@@ -254,9 +254,9 @@ bool stage_occupation(struct occupation *o, const struct discs *discs, struct te
 #pragma omp single
   {
     if (!prepare_bands(o, &status)) team_fail(team, &status);
-    team_decide(team, TEAM_LISTED);
+    team_decide(team, &o->leave_unlisted);
   }
-  if (team->stop[TEAM_LISTED]) return false;
+  if (o->leave_unlisted) return false;
 #pragma omp for schedule(static)
   for (int k = 0; k < o->band_count; k++) {
     struct band_draft *draft = &o->drafts[omp_get_thread_num()];
@@ -266,9 +266,9 @@ bool stage_occupation(struct occupation *o, const struct discs *discs, struct te
 #pragma omp single
   {
     o->painted = true;
-    team_decide(team, TEAM_PAINTED);
+    team_decide(team, &o->leave_unpainted);
   }
-  return !team->stop[TEAM_PAINTED];
+  return !o->leave_unpainted;
 }
 
 /* Adds the areas of a run of row y, which belongs to a row of its disc before the box wraps or cuts it. */

@@ -24,9 +24,9 @@
 #define DELBM_SOLID_OCCUPATION_H
 
 #include "base/team.h"
-#include "lattice/runs.h"
+#include "fluid/runs.h"
+#include "fluid/weight.h"
 #include "solid/discs.h"
-#include "solid/weight.h"
 
 enum { BAND_ROWS = 16 };
 
@@ -98,6 +98,7 @@ struct occupation {
   struct band_draft *drafts;  /* of each thread: what is needed of a band only while it is painted */
   size_t draft_count;
   int band_count;
+  bool leave_unlisted, leave_unpainted; /* after the listing of bands, after the painting (team.h) */
 };
 
 /* Sets up tables for the scene's discs. `reach` as above. */

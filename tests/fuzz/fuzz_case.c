@@ -2,8 +2,8 @@
  * read must be written such that it is read again as the same case; what is refused must come with words. */
 #include "input.h"
 
-#include "scene/scene_file.h"
-#include "scene/scene_write.h"
+#include "case/case_file.h"
+#include "case/case_write.h"
 
 #include <string.h>
 
@@ -21,12 +21,12 @@ static bool read_bytes(const void *bytes, size_t size, char *const set[], size_t
                        struct status *status)
 {
   char path[INPUT_PATH];
-  struct scene_errors errors = {0};
+  struct case_errors errors = {0};
   const int descriptor = input_file(bytes, size, path);
-  const bool read = scene_read(scene, path, set, count, &errors, status);
-  if (!read && scene_errors_total(&errors) == 0 && strlen(status->message) == 0) abort();
-  if (read && scene_errors_total(&errors) > 0) abort();
-  scene_errors_clear(&errors);
+  const bool read = case_read(scene, path, set, count, &errors, status);
+  if (!read && case_errors_total(&errors) == 0 && strlen(status->message) == 0) abort();
+  if (read && case_errors_total(&errors) > 0) abort();
+  case_errors_clear(&errors);
   close(descriptor);
   return read;
 }
@@ -35,7 +35,7 @@ static uint32_t fingerprint(const struct scene *scene)
 {
   uint32_t sum;
   struct status status;
-  if (!scene_fingerprint(scene, &sum, &status)) abort();
+  if (!case_fingerprint(scene, &sum, &status)) abort();
   return sum;
 }
 
@@ -46,7 +46,7 @@ static void expect_same_again(const struct scene *scene)
   struct scene again;
   struct status status;
   FILE *stream = open_memstream(&text, &size);
-  if (!stream || !scene_write(scene, stream) || fclose(stream) != 0) abort();
+  if (!stream || !case_write(scene, stream) || fclose(stream) != 0) abort();
   if (!read_bytes(text, size, NULL, 0, &again, &status) || fingerprint(scene) != fingerprint(&again)) {
     fprintf(stderr, "not read again as the same case: %s\n%s\n", status.message, text);
     abort();

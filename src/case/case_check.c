@@ -1,0 +1,424 @@
+#include "case/case_check.h"
+
+#include "base/memory.h"
+#include "case/case_overlaps.h"
+#include "case/case_units.h"
+#include "model/fill_grid.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+static const double most_cells = 8589934592.0; /* 2^33 */
+static const double cell_bytes = 72;           /* nine populations in double precision */
+static const double most_discs = 5e7;
+static const double most_cover = 4; /* the discs' areas together, of the box */
+static const double clearance = 4;  /* cells between a disc and its own image across a periodic axis */
+
+static const double gib = 1 << 30;
+
+static void check_cells(struct draft *draft)
+{
+  const int *size = draft->scene.domain.size;
+  double cells = (double)size[0] * size[1];
+  if (draft_knows(draft, "domain.size") && cells > most_cells)
+    draft_refuse(draft, "domain.size", "at most 2^33 cells; these would take %.0f GiB at 72 bytes a cell",
+                 cells * cell_bytes / gib);
+}
+
+/* Paths of the keys of a side, and which way is into the box. */
+struct side_keys {
+  const char *name;
+  const char *type;
+  const char *velocity;
+  int axis;
+  int inward;
+};
+
+static const struct side_keys side_keys[SIDE_COUNT] = {
+    [SIDE_LEFT] = {"left", "domain.left.type", "domain.left.velocity", 0, 1},
+    [SIDE_RIGHT] = {"right", "domain.right.type", "domain.right.velocity", 0, -1},
+    [SIDE_BOTTOM] = {"bottom", "domain.bottom.type", "domain.bottom.velocity", 1, 1},
+    [SIDE_TOP] = {"top", "domain.top.type", "domain.top.velocity", 1, -1},
+};
+
+static enum side_name opposite(enum side_name side)
+{
+  static const enum side_name other[] = {SIDE_RIGHT, SIDE_LEFT, SIDE_TOP, SIDE_BOTTOM};
+  return other[side];
+}
+
+static bool sides_known(const struct draft *draft)
+{
+  for (int s = 0; s < SIDE_COUNT; s++) {
+    if (!draft_knows(draft, side_keys[s].type)) return false;
+  }
+  return true;
+}
+
+static bool has_side(const struct draft *draft, enum side_type type)
+{
+  for (int s = 0; s < SIDE_COUNT; s++) {
+    if (draft->scene.domain.side[s].type == type) return true;
+  }
+  return false;
+}
+
+static void check_side_velocity(struct draft *draft, enum side_name s)
+{
+  const struct side_keys *keys = &side_keys[s];
+  const struct side *side = &draft->scene.domain.side[s];
+  const char axis = keys->axis == 0 ? 'x' : 'y';
+  if (!draft_knows(draft, keys->type) || !draft_knows(draft, keys->velocity)) return;
+  bool given = draft_gives(draft, keys->velocity);
+  double normal = side->velocity[keys->axis];
+  if (side->type == SIDE_WALL && normal != 0)
+    draft_refuse(draft, keys->velocity, "a velocity along the wall, with no component in %c", axis);
+  if (side->type == SIDE_INLET && !(normal * keys->inward > 0))
+    draft_refuse(draft, keys->velocity, "a velocity into the box, with a component %s 0 in %c",
+                 keys->inward > 0 ? ">" : "<", axis);
+  if (given && side->type == SIDE_PERIODIC) draft_refuse(draft, keys->velocity, "no velocity on a periodic side");
+  if (given && side->type == SIDE_OUTLET) draft_refuse(draft, keys->velocity, "no velocity on an outlet");
+}
+
+static void check_sides(struct draft *draft)
+{
+  bool known = sides_known(draft);
+  for (int s = 0; s < SIDE_COUNT; s++) {
+    check_side_velocity(draft, s);
+    const struct side *sides = draft->scene.domain.side;
+    enum side_name other = opposite(s);
+    if (!known) continue;
+    if (sides[s].type == SIDE_PERIODIC && sides[other].type != SIDE_PERIODIC)
+      draft_refuse(draft, side_keys[s].type, "the %s side to be periodic too, or neither", side_keys[other].name);
+    if (sides[s].type == SIDE_INLET && !has_side(draft, SIDE_OUTLET))
+      draft_refuse(draft, side_keys[s].type, "an outlet on another side, for what flows in");
+  }
+}
+
+static void refuse_if_given(struct draft *draft, const char *const paths[], size_t count, const char *expected)
+{
+  for (size_t i = 0; i < count; i++) {
+    if (draft_gives(draft, paths[i])) draft_refuse(draft, paths[i], "%s", expected);
+  }
+}
+
+/* Which rates may be given depends on the collision operator. */
+static void check_rate_keys(struct draft *draft)
+{
+  static const char *const paths[] = {"fluid.rates.e", "fluid.rates.q", "fluid.rates.magic", "fluid.magic"};
+  if (!draft_knows(draft, "fluid.collision")) return;
+  enum collision collision = draft_collision(draft);
+  bool magic = draft_gives(draft, "fluid.magic"), rates_magic = draft_gives(draft, "fluid.rates.magic");
+  if (collision == COLLISION_BGK) {
+    refuse_if_given(draft, paths, 4, "no such key with collision bgk, whose one rate follows from the viscosity");
+    return;
+  }
+  if (collision == COLLISION_TRT)
+    refuse_if_given(draft, paths, 2, "no such key with collision trt, whose rates follow from viscosity and magic");
+  if (collision == COLLISION_ADAPTIVE)
+    refuse_if_given(draft, &paths[1], 1,
+                    "no such key with collision adaptive, whose rate q follows from magic and speed");
+  if (magic && rates_magic) draft_refuse(draft, "fluid.rates.magic", "magic once, here or as fluid.magic");
+  if (collision == COLLISION_MRT && (magic || rates_magic) && draft_gives(draft, "fluid.rates.q"))
+    draft_refuse(draft, "fluid.rates.q", "q or magic, which sets q, but not both");
+}
+
+/* Rates must lie between 0 and 2 in floating point too. */
+static void check_rates(struct draft *draft)
+{
+  const char *magic = draft_gives(draft, "fluid.magic") ? "fluid.magic" : "fluid.rates.magic";
+  double viscosity = draft->scene.fluid.viscosity;
+  check_rate_keys(draft);
+  if (!draft_knows(draft, "fluid.viscosity")) return;
+  if (rate_from_viscosity(viscosity) >= 2) {
+    draft_refuse(draft, "fluid.viscosity", "a viscosity large enough for 3 viscosity + 1/2 to differ from 1/2");
+    return;
+  }
+  if (!draft_gives(draft, magic) || !draft_knows(draft, magic)) return;
+  double rate = rate_from_magic(draft->magic, viscosity);
+  if (rate >= 2) draft_refuse(draft, magic, "a value large enough for the rate q to be below 2");
+}
+
+/* Linked cells find pairs, not the cells that these share. */
+static void check_search(struct draft *draft)
+{
+  const struct scene *scene = &draft->scene;
+  if (scene->contact.search == SEARCH_LINKED_CELL && scene->contact.area == AREA_CELLS)
+    draft_refuse(draft, "contact.search",
+                 "grid: the area by cells is summed over the cells that the grid search finds");
+}
+
+static void check_zero_flux(struct draft *draft)
+{
+  if (!draft_gives(draft, "fluid.zero_flux") || !draft_knows(draft, "fluid.zero_flux") || !sides_known(draft)) return;
+  bool closed = scene_is_closed(&draft->scene, 0) || scene_is_closed(&draft->scene, 1);
+  if (draft->scene.fluid.zero_flux && !closed)
+    draft_refuse(draft, "fluid.zero_flux", "false, because walls close neither axis");
+}
+
+/* Says so if a disc of this radius meets its own image across a periodic axis. */
+static void check_images(struct draft *draft, double radius, const char *path)
+{
+  static const char *const names[] = {"x", "y"};
+  if (!sides_known(draft) || !draft_knows(draft, "domain.size")) return;
+  for (int axis = 0; axis < 2; axis++) {
+    int size = draft->scene.domain.size[axis];
+    if (scene_is_periodic(&draft->scene, axis) && 2 * radius + clearance > size)
+      draft_refuse(draft, path, "2 radius + %g <= %d, the periodic extent in %s", clearance, size, names[axis]);
+  }
+}
+
+enum { DISC_PATH = 64 };
+
+static const char *disc_path(char path[DISC_PATH], size_t i, const char *name)
+{
+  snprintf(path, DISC_PATH, "particles.discs.%zu.%s", i, name);
+  return path;
+}
+
+/* True if the table has found nothing wrong with a listed disc. */
+static bool disc_known(const struct tree_node *list, size_t i)
+{
+  return !list->entries[i].value->refused;
+}
+
+static void check_disc(struct draft *draft, size_t i)
+{
+  const struct disc_spec *disc = &draft->scene.particles.discs[i];
+  const int *size = draft->scene.domain.size;
+  const double *at = disc->position, *velocity = disc->velocity;
+  char path[DISC_PATH];
+  bool inside = at[0] >= 0 && at[0] < size[0] && at[1] >= 0 && at[1] < size[1];
+  if (!inside && draft_knows(draft, "domain.size"))
+    draft_refuse(draft, disc_path(path, i, "position"), "a centre in the box, 0 <= x < %d and 0 <= y < %d", size[0],
+                 size[1]);
+  check_images(draft, disc->radius, disc_path(path, i, "radius"));
+  if (disc->motion == DISC_FIXED && (velocity[0] != 0 || velocity[1] != 0))
+    draft_refuse(draft, disc_path(path, i, "velocity"), "none for a fixed disc, which may only spin");
+  double speed = hypot(velocity[0], velocity[1]) + fabs(disc->spin) * disc->radius;
+  if (speed > scene_most_speed)
+    draft_refuse(draft, disc_path(path, i, disc->spin != 0 ? "spin" : "velocity"),
+                 "|velocity| + |spin| radius <= %g, not %.3g, for the Mach number's sake", scene_most_speed, speed);
+}
+
+/* A centre and whose it is. */
+struct centre {
+  double at[2];
+  size_t disc;
+};
+
+static int compare_centres(const void *a, const void *b)
+{
+  const struct centre *left = a, *right = b;
+  for (int axis = 0; axis < 2; axis++) {
+    if (left->at[axis] < right->at[axis]) return -1;
+    if (left->at[axis] > right->at[axis]) return 1;
+  }
+  return (left->disc > right->disc) - (left->disc < right->disc);
+}
+
+/* Two discs with one centre have no contact normal. */
+static bool check_centres(struct draft *draft, const struct tree_node *list, struct status *status)
+{
+  size_t count = 0;
+  struct centre *centres = memory_allocate(list->count, sizeof *centres, "the discs' centres", status);
+  if (!centres) return false;
+  for (size_t i = 0; i < list->count; i++) {
+    const double *at = draft->scene.particles.discs[i].position;
+    if (disc_known(list, i)) centres[count++] = (struct centre){{at[0], at[1]}, i};
+  }
+  qsort(centres, count, sizeof *centres, compare_centres);
+  for (size_t i = 1; i < count; i++) {
+    const struct centre *one = &centres[i - 1], *two = &centres[i];
+    char path[DISC_PATH];
+    if (one->at[0] == two->at[0] && one->at[1] == two->at[1])
+      draft_refuse(draft, disc_path(path, two->disc, "position"), "another: discs %zu and %zu have the same centre",
+                   one->disc, two->disc);
+  }
+  free(centres);
+  return true;
+}
+
+/* Discs that lie over each other many times meet in more pairs than any memory holds. */
+static void check_cover(struct draft *draft, const struct tree_node *list)
+{
+  const double box = (double)draft->scene.domain.size[0] * draft->scene.domain.size[1];
+  double covered = 0;
+  for (size_t i = 0; i < list->count; i++) {
+    const double radius = draft->scene.particles.discs[i].radius;
+    if (disc_known(list, i)) covered += fmin(M_PI * radius * radius, box);
+  }
+  if (draft_knows(draft, "domain.size") && covered > most_cover * box)
+    draft_refuse(draft, "particles.discs", "discs that together cover the box at most %g times, not %.4g times",
+                 most_cover, covered / box);
+}
+
+/* A disc deep in a side, or in another disc, leaves it faster than fluid can follow. */
+static void check_depth(struct draft *draft, const struct case_overlap *overlap)
+{
+  const bool side = case_overlap_is_with_side(overlap);
+  char path[DISC_PATH];
+  disc_path(path, overlap->a, "position");
+  if (side && overlap->depth > most_depth_in_side)
+    draft_refuse(
+        draft, path,
+        "at most %g cells beyond a side, not %.3g beyond the %s one, for fluid to follow as the disc leaves it",
+        most_depth_in_side, overlap->depth, side_name_text((enum side_name)(overlap->b - overlap_sides)));
+  if (!side && overlap->depth > most_depth_in_disc)
+    draft_refuse(draft, path,
+                 "at most %g cells within another disc, not %.3g within disc %zu, for fluid to follow as they part",
+                 most_depth_in_disc, overlap->depth, overlap->b);
+}
+
+/* How far a disc of this speed, `gap` before a side, goes beyond it: its energy on arrival, after drag (coefficient 1), with
+ * the fluid inside, is that of the spring, 2/5 of force times depth at small overlap. */
+static double depth_of_impact(const struct draft *draft, const struct disc_spec *disc, double gap, double speed)
+{
+  const struct scene *scene = &draft->scene;
+  const double density = disc->density > 0 ? disc->density : draft->density;
+  const double mass = M_PI * disc->radius * disc->radius * (density + 1);
+  const double arrival = speed * exp(-gap * disc->radius / mass);
+  const double spring = scene->contact.alpha * scene->contact.stiffness * 4 / 3 * sqrt(2 * disc->radius);
+  return pow(0.5 * mass * arrival * arrival / (0.4 * spring), 0.4);
+}
+
+static void check_impact(struct draft *draft, size_t i)
+{
+  const struct scene *scene = &draft->scene;
+  const struct disc_spec *disc = &scene->particles.discs[i];
+  for (enum side_name side = 0; side < SIDE_COUNT && disc->motion == DISC_FREE; side++) {
+    const int axis = side == SIDE_BOTTOM || side == SIDE_TOP;
+    const bool high = side == SIDE_RIGHT || side == SIDE_TOP;
+    const double at = disc->position[axis], distance = high ? scene->domain.size[axis] - at : at;
+    const double speed = high ? disc->velocity[axis] : -disc->velocity[axis];
+    if (scene->domain.side[side].type == SIDE_PERIODIC || speed <= 0) continue;
+    const double depth = depth_of_impact(draft, disc, fmax(0, distance - disc->radius), speed);
+    char path[DISC_PATH];
+    if (depth > most_depth_in_side)
+      draft_refuse(
+          draft, disc_path(path, i, "velocity"),
+          "one that takes the disc at most %g cells beyond the %s side, not %.3g; a larger contact.stiffness stops "
+          "it sooner",
+          most_depth_in_side, side_name_text(side), depth);
+  }
+}
+
+static bool check_depths(struct draft *draft, const struct tree_node *list, struct status *status)
+{
+  struct case_overlaps found;
+  bool known = sides_known(draft) && draft_knows(draft, "domain.size") && draft->scene.contact.stiffness > 0;
+  for (size_t i = 0; i < list->count; i++) known = known && disc_known(list, i);
+  if (!known || case_errors_total(draft->errors) > 0) return true; /* places that are wrong by themselves come first */
+  const bool ok = case_overlaps_find(&draft->scene, list->count, &found, status);
+  for (size_t k = 0; ok && k < found.count; k++) check_depth(draft, &found.list[k]);
+  for (size_t i = 0; ok && i < list->count; i++) check_impact(draft, i);
+  case_overlaps_clear(&found);
+  return ok;
+}
+
+static bool check_discs(struct draft *draft, struct status *status)
+{
+  const struct tree_node *list = tree_find(draft->root, "particles.discs");
+  if (!list || list->kind != TREE_LIST) return true;
+  for (size_t i = 0; i < list->count; i++) {
+    if (disc_known(list, i)) check_disc(draft, i);
+  }
+  check_cover(draft, list);
+  return check_centres(draft, list, status) && check_depths(draft, list, status);
+}
+
+/* A free disc needs a density: its own or particles.density. */
+static void check_density(struct draft *draft)
+{
+  const struct scene *scene = &draft->scene;
+  if (draft_gives(draft, "particles.density")) return;
+  if (scene->particles.fill.present && !draft_gives(draft, "particles.fill.density")) {
+    draft_refuse(draft, "particles.density", "a number > 0, because the discs of particles.fill have no other density");
+    return;
+  }
+  const struct tree_node *list = tree_find(draft->root, "particles.discs");
+  for (size_t i = 0; i < scene->particles.listed; i++) {
+    const struct disc_spec *disc = &scene->particles.discs[i];
+    if (!disc_known(list, i) || disc->motion != DISC_FREE || disc->density > 0) continue;
+    draft_refuse(draft, "particles.density", "a number > 0, because disc %zu is free and has no density of its own", i);
+    return;
+  }
+}
+
+static bool check_region(struct draft *draft, const double region[4])
+{
+  const int *size = draft->scene.domain.size;
+  bool inside = region[2] <= size[0] && region[3] <= size[1];
+  if (region[0] < region[2] && region[1] < region[3] && inside) return true;
+  draft_refuse(draft, "particles.fill.region", "0 <= x0 < x1 <= %d and 0 <= y0 < y1 <= %d", size[0], size[1]);
+  return false;
+}
+
+static void check_count(struct draft *draft, const double region[4])
+{
+  double spacing = draft->scene.particles.fill.spacing;
+  double columns = fill_grid_cells(region, spacing, 0), rows = fill_grid_cells(region, spacing, 1);
+  if (columns < 1 || rows < 1) {
+    draft_refuse(draft, "particles.fill.spacing",
+                 "at most the width and the height of the region, so that a disc fits");
+    return;
+  }
+  double discs = columns * rows + (double)draft->scene.particles.listed;
+  if (discs > most_discs)
+    draft_refuse(draft, "particles.fill.spacing", "at most %.0f discs; these would be %.0f and take %.1f GiB to list",
+                 most_discs, discs, discs * sizeof(struct disc_spec) / gib);
+}
+
+/* A region that ended with the box ends with it also where the box has been rounded to whole cells. */
+static void end_with_box(const struct draft *draft, double region[4])
+{
+  for (int axis = 0; axis < 2; axis++) {
+    const double size = draft->scene.domain.size[axis];
+    if (region[2 + axis] > size && region[2 + axis] <= draft->size_as_given[axis]) region[2 + axis] = size;
+  }
+}
+
+static void check_fill(struct draft *draft)
+{
+  struct fill_spec *fill = &draft->scene.particles.fill;
+  const bool radius = draft_knows(draft, "particles.fill.radius");
+  const bool spacing = draft_knows(draft, "particles.fill.spacing");
+  const bool region = draft_knows(draft, "particles.fill.region") && draft_knows(draft, "domain.size");
+  if (!fill->present || !draft_knows(draft, "particles.fill")) return;
+  if (radius && spacing && fill->spacing < 2 * fill->radius)
+    draft_refuse(draft, "particles.fill.spacing", "at least 2 radius = %g", 2 * fill->radius);
+  if (radius) check_images(draft, fill->radius, "particles.fill.radius");
+  if (spacing && draft_knows(draft, "particles.fill.jitter") && fill->jitter > fill->spacing / 2)
+    draft_refuse(draft, "particles.fill.jitter", "at most half the spacing = %g", fill->spacing / 2);
+  if (!region) return;
+  double box[4];
+  end_with_box(draft, fill->region);
+  draft_fill_region(draft, box);
+  if (check_region(draft, box) && spacing) check_count(draft, box);
+}
+
+/* The part of the box that fields show: at least one cell. */
+static void check_shown(struct draft *draft)
+{
+  const double *region = draft->scene.output.fields.region;
+  const int *size = draft->scene.domain.size;
+  static const char path[] = "output.fields.region";
+  if (!draft_gives(draft, path) || !draft_knows(draft, path) || !draft_knows(draft, "domain.size")) return;
+  if (!(region[0] < region[2] && region[1] < region[3] && region[2] <= size[0] && region[3] <= size[1]))
+    draft_refuse(draft, path, "0 <= x0 < x1 <= %d and 0 <= y0 < y1 <= %d", size[0], size[1]);
+}
+
+bool case_check(struct draft *draft, struct status *status)
+{
+  case_units_check(draft);
+  check_cells(draft);
+  check_sides(draft);
+  check_rates(draft);
+  check_zero_flux(draft);
+  check_search(draft);
+  check_fill(draft);
+  check_shown(draft);
+  check_density(draft);
+  return check_discs(draft, status);
+}

@@ -1,0 +1,76 @@
+#include "case/case_derive.h"
+
+#include <string.h>
+
+static const double default_magic = 3.0 / 16.0;
+static const double adaptive_magic = 1.0 / 12.0;
+static const double default_density = 1.0;
+
+static void derive_rates(struct draft *draft)
+{
+  double viscosity = draft->scene.fluid.viscosity;
+  enum collision collision = draft_collision(draft);
+  struct rates *rates = &draft->scene.fluid.rates;
+  draft->scene.fluid.collision = collision;
+  rates->s_nu = rate_from_viscosity(viscosity);
+  if (collision == COLLISION_BGK || collision == COLLISION_TRT) rates->s_e = rates->s_nu;
+  const double fast = rates->s_q; /* by default the paper's */
+  if (collision == COLLISION_BGK) rates->s_q = rates->s_nu;
+  if (collision == COLLISION_TRT && draft->magic == 0) draft->magic = default_magic;
+  if (collision == COLLISION_ADAPTIVE && draft->magic == 0) draft->magic = adaptive_magic;
+  if (draft->magic > 0) rates->s_q = rate_from_magic(draft->magic, viscosity);
+  if (collision == COLLISION_ADAPTIVE && rates->s_q < fast) rates->s_q_fast = fast;
+}
+
+static void derive_densities(struct draft *draft)
+{
+  double density = draft->density > 0 ? draft->density : default_density;
+  struct scene *scene = &draft->scene;
+  for (size_t i = 0; i < scene->particles.listed; i++) {
+    if (scene->particles.discs[i].density == 0) scene->particles.discs[i].density = density;
+  }
+  if (scene->particles.fill.present && scene->particles.fill.density == 0) scene->particles.fill.density = density;
+}
+
+static void derive_fill(struct draft *draft)
+{
+  struct fill_spec *fill = &draft->scene.particles.fill;
+  if (!fill->present) return;
+  draft_fill_region(draft, fill->region);
+  if (!draft_gives(draft, "particles.fill.jitter")) fill->jitter = (fill->spacing - 2 * fill->radius) / 4;
+}
+
+static bool has_free_discs(const struct scene *scene)
+{
+  if (scene->particles.fill.present) return true;
+  for (size_t i = 0; i < scene->particles.listed; i++) {
+    if (scene->particles.discs[i].motion == DISC_FREE) return true;
+  }
+  return false;
+}
+
+static void derive_zero_flux(struct draft *draft)
+{
+  struct scene *scene = &draft->scene;
+  if (draft_gives(draft, "fluid.zero_flux")) return;
+  bool closed = scene_is_closed(scene, 0) || scene_is_closed(scene, 1);
+  bool heavy = scene->particles.gravity[0] != 0 || scene->particles.gravity[1] != 0;
+  scene->fluid.zero_flux = closed && heavy && has_free_discs(scene);
+}
+
+static void derive_shown(struct draft *draft)
+{
+  struct scene *scene = &draft->scene;
+  if (draft_gives(draft, "output.fields.region")) return;
+  const double box[4] = {0, 0, scene->domain.size[0], scene->domain.size[1]};
+  memcpy(scene->output.fields.region, box, sizeof box);
+}
+
+void case_derive(struct draft *draft)
+{
+  derive_rates(draft);
+  derive_densities(draft);
+  derive_fill(draft);
+  derive_zero_flux(draft);
+  derive_shown(draft);
+}

@@ -1,0 +1,10 @@
+/* Values that follow from other keys where the case does not give them. */
+#ifndef DELBM_CASE_CASE_DERIVE_H
+#define DELBM_CASE_CASE_DERIVE_H
+
+#include "case/case_draft.h"
+
+/* Completes the scene of a valid draft: rates, densities, fill, zero_flux. */
+void case_derive(struct draft *draft);
+
+#endif

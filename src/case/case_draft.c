@@ -1,0 +1,61 @@
+#include "case/case_draft.h"
+
+#include "case/case_keys.h"
+
+#include <stdarg.h>
+#include <string.h>
+
+bool draft_gives(const struct draft *draft, const char *path)
+{
+  return tree_find(draft->root, path) != NULL;
+}
+
+static bool is_required(const char *path)
+{
+  size_t count;
+  const struct key *keys = key_table(&count);
+  for (size_t i = 0; i < count; i++) {
+    if (strcmp(keys[i].path, path) == 0) return key_is_required(&keys[i]);
+  }
+  return false;
+}
+
+bool draft_knows(const struct draft *draft, const char *path)
+{
+  bool found;
+  const struct tree_node *node = tree_nearest(draft->root, path, &found);
+  return !node->refused && (found || !is_required(path));
+}
+
+enum collision draft_collision(const struct draft *draft)
+{
+  if (!draft_gives(draft, "fluid.collision") && draft_gives(draft, "fluid.rates.q")) return COLLISION_MRT;
+  return draft->scene.fluid.collision;
+}
+
+void draft_refuse(struct draft *draft, const char *path, const char *expected, ...)
+{
+  char words[512];
+  va_list arguments;
+  va_start(arguments, expected);
+  vsnprintf(words, sizeof words, expected, arguments);
+  va_end(arguments);
+
+  bool found;
+  const struct tree_node *node = tree_nearest(draft->root, path, &found);
+  char place[TREE_PLACE], value[TREE_TEXT];
+  tree_place(node, place);
+  tree_print(node, value);
+  if (found)
+    case_errors_add(draft->errors, "%s: %s: got %s; expected %s", place, path, value, words);
+  else
+    case_errors_add(draft->errors, "%s: %s: missing; expected %s", place, path, words);
+}
+
+void draft_fill_region(const struct draft *draft, double region[4])
+{
+  const int *size = draft->scene.domain.size;
+  const double box[4] = {0, 0, size[0], size[1]};
+  bool given = draft_gives(draft, "particles.fill.region");
+  memcpy(region, given ? draft->scene.particles.fill.region : box, sizeof box);
+}

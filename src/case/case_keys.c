@@ -1,0 +1,162 @@
+#include "case/case_keys.h"
+
+#include "base/words.h"
+#include "case/case_draft.h"
+#include "case/case_value.h"
+
+#include <stdint.h>
+#include <string.h>
+
+_Static_assert(sizeof(enum side_type) == sizeof(int), "a choice is stored as an int");
+_Static_assert(SIDE_WALL == 0 && SIDE_OUTLET == 3, "order of wall|periodic|inlet|outlet");
+_Static_assert(FRAME_DISCS_PLAIN == 0 && FRAME_DISCS_RADIUS == 3, "order of plain|height|speed|radius");
+_Static_assert(COLLISION_BGK == 0 && COLLISION_MRT == 2, "order of bgk|trt|mrt");
+
+static const struct key table[] = {
+#define KEY(path, kind, owner, field, fallback, allowed, unit, help)                                                   \
+  {path, KEY_##kind, offsetof(struct owner, field), fallback, allowed, unit, help},
+#include "case/case_keys.def"
+#undef KEY
+};
+
+static const size_t table_count = sizeof table / sizeof table[0];
+
+const struct key *key_table(size_t *count)
+{
+  *count = table_count;
+  return table;
+}
+
+bool key_is_required(const struct key *key)
+{
+  return strcmp(key->fallback, "required") == 0;
+}
+
+bool key_is_automatic(const struct key *key)
+{
+  return strcmp(key->fallback, "auto") == 0;
+}
+
+bool key_has_default(const struct key *key)
+{
+  return !key_is_required(key) && strcmp(key->fallback, "derived") != 0;
+}
+
+const char *key_within(const char *path, const char *section)
+{
+  size_t length = strlen(section);
+  if (length == 0) return path;
+  return strncmp(path, section, length) == 0 && path[length] == '.' ? path + length + 1 : NULL;
+}
+
+enum key_role key_role(const char *section, const char *name, const struct key **key)
+{
+  size_t length = strlen(name);
+  for (size_t i = 0; i < table_count; i++) {
+    const char *rest = key_within(table[i].path, section);
+    if (!rest || strncmp(rest, name, length) != 0) continue;
+    if (rest[length] == '\0') {
+      *key = &table[i];
+      return ROLE_KEY;
+    }
+    if (rest[length] == '.') return ROLE_SECTION;
+    if (strncmp(rest + length, "[].", 3) == 0) return ROLE_LIST;
+  }
+  return ROLE_UNKNOWN;
+}
+
+void key_names(const char *section, char *text, size_t size)
+{
+  const char *last = "";
+  size_t used = 0, last_length = 0;
+  *text = '\0';
+  for (size_t i = 0; i < table_count; i++) {
+    const char *name = key_within(table[i].path, section);
+    if (!name) continue;
+    size_t length = strcspn(name, ".[");
+    if (length == last_length && strncmp(name, last, length) == 0) continue;
+    int added = snprintf(text + used, size - used, "%s%.*s", used ? ", " : "", (int)length, name);
+    if (added < 0 || (size_t)added >= size - used) return;
+    used += (size_t)added;
+    last = name;
+    last_length = length;
+  }
+}
+
+static const char *last_name(const char *path)
+{
+  const char *dot = strrchr(path, '.');
+  return dot ? dot + 1 : path;
+}
+
+/* How unlike `name` in `section` a path of the table is; SIZE_MAX where it is not near. Names of the same section are
+ * compared alone. For another section the whole paths and the names are, both at a price: in doubt it is a slip in the same
+ * section. */
+static size_t unlikeness(const char *section, const char *name, const char *candidate)
+{
+  const char *rest = key_within(candidate, section);
+  if (rest && !strchr(rest, '.')) {
+    const size_t distance = edit_distance(name, rest);
+    return words_are_near(name, distance) ? distance : SIZE_MAX;
+  }
+  char full[2 * KEY_PATH];
+  snprintf(full, sizeof full, "%.*s%s%.*s", KEY_PATH - 2, section, *section ? "." : "", KEY_PATH - 1, name);
+  const size_t whole = edit_distance(full, candidate), last = edit_distance(name, last_name(candidate));
+  const size_t by_path = words_are_near(name, whole) ? whole + 1 : SIZE_MAX;
+  const size_t by_name = words_are_near(name, last) ? last + 2 : SIZE_MAX;
+  return by_path < by_name ? by_path : by_name;
+}
+
+struct nearest {
+  const char *section;
+  const char *name;
+  char *path;
+  size_t distance;
+};
+
+/* Compares the first `length` characters of a path: a key, or a section or list on the way to one. */
+static void consider(struct nearest *nearest, const char *path, size_t length)
+{
+  char candidate[KEY_PATH];
+  snprintf(candidate, sizeof candidate, "%.*s", (int)length, path);
+  char *brackets = strstr(candidate, "[]");
+  if (brackets && brackets[2] == '\0') *brackets = '\0'; /* at the end: the list itself */
+  size_t distance = unlikeness(nearest->section, nearest->name, candidate);
+  if (distance >= nearest->distance) return;
+  nearest->distance = distance;
+  snprintf(nearest->path, KEY_PATH, "%s", candidate);
+}
+
+bool key_nearest(const char *section, const char *name, char path[KEY_PATH])
+{
+  struct nearest nearest = {section, name, path, SIZE_MAX};
+  for (size_t i = 0; i < table_count; i++) {
+    for (const char *end = table[i].path; *end; end += *end == '.') {
+      end += strcspn(end, ".");
+      consider(&nearest, table[i].path, (size_t)(end - table[i].path));
+    }
+  }
+  return nearest.distance < SIZE_MAX;
+}
+
+static void print_fallback(const struct key *key, FILE *file)
+{
+  if (key_is_required(key))
+    fputs("required", file);
+  else
+    fprintf(file, "default %s", key_has_default(key) ? key->fallback : "as follows");
+}
+
+void case_print_keys(FILE *file)
+{
+  for (size_t i = 0; i < table_count; i++) {
+    const struct key *key = &table[i];
+    char allowed[VALUE_TEXT];
+    value_describe(key, allowed);
+    fprintf(file, "%s\n    %s", key->path, allowed);
+    if (*key->unit) fprintf(file, "; %s", key->unit);
+    fputs("; ", file);
+    print_fallback(key, file);
+    fprintf(file, "\n    %s\n", key->help);
+  }
+}

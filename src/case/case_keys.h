@@ -1,0 +1,60 @@
+/* The keys of a case file: the table case_keys.def as data, and what can be asked of it. */
+#ifndef DELBM_CASE_CASE_KEYS_H
+#define DELBM_CASE_CASE_KEYS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
+
+enum { KEY_PATH = 96 }; /* room for the path of any key or section in the table */
+
+enum key_kind {
+  KEY_TEXT,    /* const char * */
+  KEY_FLAG,    /* bool */
+  KEY_CHOICE,  /* an enumeration */
+  KEY_INTEGER, /* int */
+  KEY_LONG,    /* int64_t */
+  KEY_SIZE,    /* int[2] */
+  KEY_NUMBER,  /* double */
+  KEY_POINT,   /* double[2] */
+  KEY_VECTOR,  /* double[2], the range being that of its length */
+  KEY_BOX,     /* double[4] */
+  KEY_CELLS    /* double[4], whole numbers */
+};
+
+struct key {
+  const char *path;
+  enum key_kind kind;
+  size_t offset; /* of the value in struct draft or, for the keys of a listed disc, in struct disc_draft */
+  const char *fallback;
+  const char *allowed;
+  const char *unit;
+  const char *help;
+};
+
+/* What a name means in a section of the table. */
+enum key_role { ROLE_UNKNOWN, ROLE_KEY, ROLE_SECTION, ROLE_LIST };
+
+const struct key *key_table(size_t *count);
+
+bool key_is_required(const struct key *key);
+bool key_is_automatic(const struct key *key);
+/* True if the fallback is a value, not a word about it. */
+bool key_has_default(const struct key *key);
+
+/* The part of `path` that follows the section ("" is the root), or NULL if it does not lie in it. */
+const char *key_within(const char *path, const char *section);
+
+/* The role of `name` in a section; *key is set where it is a key. */
+enum key_role key_role(const char *section, const char *name, const struct key **key);
+
+/* The names that a section holds, in a list. */
+void key_names(const char *section, char *text, size_t size);
+
+/* The path of the key, section or list in the table that may be meant by `name` in a section. False if none is near. */
+bool key_nearest(const char *section, const char *name, char path[KEY_PATH]);
+
+/* Prints the key reference: every key with what is allowed, its unit, its default and a line of help. */
+void case_print_keys(FILE *file);
+
+#endif

@@ -1,0 +1,240 @@
+#include "case/case_write.h"
+
+#include "case/case_draft.h"
+#include "case/case_keys.h"
+#include "case/case_value.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <zlib.h>
+
+/* The magic value from which rate_from_magic gives exactly this rate, as short as it can be written. The rate falls
+ * with the value, also in floating point, so bisection finds one if there is any. */
+static double magic_from_rate(double rate, double viscosity)
+{
+  double low = 0, high = 10, magic = (1 / rate - 0.5) * (3 * viscosity);
+  for (int digits = 1; digits <= 17; digits++) {
+    char text[32];
+    snprintf(text, sizeof text, "%.*g", digits, magic);
+    const double rounded = strtod(text, NULL);
+    if (rate_from_magic(rounded, viscosity) == rate) return rounded;
+  }
+  while (rate_from_magic(magic, viscosity) != rate) {
+    if (rate_from_magic(magic, viscosity) > rate)
+      low = magic;
+    else
+      high = magic;
+    double middle = low + (high - low) / 2;
+    if (middle == low || middle == high) break;
+    magic = middle;
+  }
+  return magic;
+}
+
+/* True where the rate q is written as the magic value that it follows from. */
+static bool has_magic(const struct scene *scene)
+{
+  return scene->fluid.collision == COLLISION_TRT || scene->fluid.collision == COLLISION_ADAPTIVE;
+}
+
+/* A draft with the values of a scene, whose texts and discs it shares. */
+static struct draft draft_from_scene(const struct scene *scene)
+{
+  struct draft draft = {.scene = *scene, .title = scene->title ? scene->title : "", .kernel = scene->fluid.kernel};
+  if (has_magic(scene)) draft.magic = magic_from_rate(scene->fluid.rates.s_q, scene->fluid.viscosity);
+  return draft;
+}
+
+/* True for keys that say nothing in this scene, or what another key already says. */
+static bool is_idle(const struct key *key, const struct scene *scene)
+{
+  if (strcmp(key->path, "units.viscosity") == 0) return true;
+  if (strcmp(key->path, "units.density") == 0) return scene->units.density == 0;
+  if (key_within(key->path, "units")) return scene->units.dx == 0;
+  if (strcmp(key->path, "fluid.rates.magic") == 0) return true;
+  if (strcmp(key->path, "fluid.magic") == 0) return !has_magic(scene);
+  if (strcmp(key->path, "fluid.rates.q") == 0) return scene->fluid.collision != COLLISION_MRT;
+  if (strcmp(key->path, "fluid.rates.e") == 0)
+    return scene->fluid.collision != COLLISION_MRT && scene->fluid.collision != COLLISION_ADAPTIVE;
+  if (strcmp(key->path, "particles.density") == 0) return true;
+  if (key_within(key->path, "particles.fill")) return !scene->particles.fill.present;
+  return false;
+}
+
+/* True for keys that are left out where they have their default: those of discs, and the velocities of sides, which
+ * not every type of side may have. */
+static bool is_optional(const struct key *key)
+{
+  return key_within(key->path, "particles.discs[]") || (key_within(key->path, "domain") && key->kind == KEY_VECTOR);
+}
+
+/* The code point at *text, which moves past it. The text is UTF-8, as libyaml has made sure. */
+static unsigned long next_character(const char **text)
+{
+  const unsigned char *at = (const unsigned char *)*text;
+  int more = *at >= 0xF0 ? 3 : *at >= 0xE0 ? 2 : *at >= 0xC0 ? 1 : 0;
+  unsigned long character = more ? *at & (0x3Fu >> more) : *at;
+  for (at++; more > 0 && *at; more--, at++) character = character << 6 | (*at & 0x3F);
+  *text = (const char *)at;
+  return character;
+}
+
+/* True for what YAML does not take as it stands between double quotes, or takes as the end of a line. */
+static bool needs_escape(unsigned long character)
+{
+  bool control = character < 0x20 || (character >= 0x7F && character < 0xA0);
+  bool separator = character == 0x2028 || character == 0x2029;
+  bool special = character == 0xFEFF || character == 0xFFFE || character == 0xFFFF;
+  return control || separator || special || character == '"' || character == '\\';
+}
+
+static void write_quoted(const char *text, FILE *file)
+{
+  fputc('"', file);
+  while (*text) {
+    const char *start = text;
+    unsigned long character = next_character(&text);
+    if (needs_escape(character))
+      fprintf(file, "\\U%08lX", character);
+    else
+      fwrite(start, 1, (size_t)(text - start), file);
+  }
+  fputc('"', file);
+}
+
+static void write_text(const struct key *key, const void *owner, FILE *file)
+{
+  const char *text;
+  memcpy(&text, (const unsigned char *)owner + key->offset, sizeof text);
+  if (text)
+    write_quoted(text, file);
+  else
+    fputs(key->fallback, file);
+}
+
+static void write_line(const struct key *key, const char *indent, const char *name, const void *owner, FILE *file)
+{
+  char value[VALUE_TEXT];
+  fprintf(file, "%s%s: ", indent, name);
+  if (key->kind == KEY_TEXT) {
+    write_text(key, owner, file);
+  } else {
+    value_format(key, owner, value);
+    fputs(value, file);
+  }
+  fputc('\n', file);
+}
+
+/* Rows of the table that form a section. */
+struct rows {
+  const struct key *keys;
+  size_t count;
+  char section[KEY_PATH];
+};
+
+/* Writes the rows as a flow mapping after `before`; nothing if every key is left out. */
+static void write_flow(const struct rows *rows, const struct scene *scene, const void *owner, const char *before,
+                       FILE *file)
+{
+  bool any = false;
+  for (size_t i = 0; i < rows->count; i++) {
+    const struct key *key = &rows->keys[i];
+    char value[VALUE_TEXT];
+    value_format(key, owner, value);
+    if (is_idle(key, scene) || (is_optional(key) && strcmp(value, key->fallback) == 0)) continue;
+    fprintf(file, "%s%s: %s", any ? ", " : before, key_within(key->path, rows->section), value);
+    any = true;
+  }
+  if (any) fputs("}\n", file);
+}
+
+static void write_discs(const struct rows *rows, const struct scene *scene, FILE *file)
+{
+  if (scene->particles.listed > 0) fputs("  discs:\n", file);
+  for (size_t i = 0; i < scene->particles.listed; i++) {
+    const struct disc_spec *spec = &scene->particles.discs[i];
+    const struct disc_draft disc = {*spec, spec->motion == DISC_FIXED, spec->motion == DISC_DRIVEN};
+    write_flow(rows, scene, &disc, "    - {", file);
+  }
+}
+
+/* The rows from the first on that share its section. */
+static struct rows section_rows(const struct key *first, const struct key *end)
+{
+  struct rows rows = {.keys = first};
+  snprintf(rows.section, sizeof rows.section, "%.*s", (int)(strrchr(first->path, '.') - first->path), first->path);
+  for (const struct key *key = first; key < end && key_within(key->path, rows.section); key++) rows.count++;
+  return rows;
+}
+
+/* Writes the key, or the section within a section that starts with it; returns how many rows that took. */
+static size_t write_rows(const struct draft *draft, const struct key *key, const struct key *end, FILE *file)
+{
+  const char *dot = strchr(key->path, '.');
+  if (!dot || !strchr(dot + 1, '.')) {
+    if (!is_idle(key, &draft->scene)) write_line(key, dot ? "  " : "", dot ? dot + 1 : key->path, draft, file);
+    return 1;
+  }
+  const struct rows rows = section_rows(key, end);
+  if (strstr(rows.section, "[]")) {
+    write_discs(&rows, &draft->scene, file);
+  } else {
+    char before[KEY_PATH + 8];
+    snprintf(before, sizeof before, "  %s: {", strchr(rows.section, '.') + 1);
+    write_flow(&rows, &draft->scene, draft, before, file);
+  }
+  return rows.count;
+}
+
+/* True for the sections that decide what the numbers of a run are and mean. */
+static bool is_compared(const struct key *key)
+{
+  static const char *const sections[] = {"domain", "fluid", "units", "coupling", "particles", "contact"};
+  for (size_t i = 0; i < sizeof sections / sizeof sections[0]; i++)
+    if (key_within(key->path, sections[i])) return true;
+  return false;
+}
+
+/* The case, or those of its sections alone. */
+static void write_case(const struct scene *scene, bool compared_alone, FILE *file)
+{
+  const struct draft draft = draft_from_scene(scene);
+  size_t count;
+  const struct key *keys = key_table(&count);
+  for (size_t i = 0; i < count;) {
+    if (compared_alone && !is_compared(&keys[i])) {
+      i++;
+      continue;
+    }
+    size_t top = strcspn(keys[i].path, ".");
+    bool opens = i == 0 || strncmp(keys[i].path, keys[i - 1].path, top + 1) != 0;
+    const bool none = key_within(keys[i].path, "units") && scene->units.dx == 0;
+    if (keys[i].path[top] == '.' && opens && !none) fprintf(file, "%.*s:\n", (int)top, keys[i].path);
+    i += write_rows(&draft, &keys[i], keys + count, file);
+  }
+}
+
+bool case_write(const struct scene *scene, FILE *file)
+{
+  fprintf(file, "# written by delbm %s\n", DELBM_VERSION);
+  write_case(scene, false, file);
+  return fflush(file) == 0 && !ferror(file);
+}
+
+static ssize_t add_to_sum(void *cookie, const char *bytes, size_t count)
+{
+  uint32_t *sum = cookie;
+  *sum = (uint32_t)crc32_z(*sum, (const void *)bytes, count);
+  return (ssize_t)count;
+}
+
+bool case_fingerprint(const struct scene *scene, uint32_t *fingerprint, struct status *status)
+{
+  *fingerprint = 0;
+  /* not open_memstream, which loses what it has no memory for and says so to nobody */
+  FILE *stream = fopencookie(fingerprint, "w", (cookie_io_functions_t){.write = add_to_sum});
+  if (stream) write_case(scene, true, stream);
+  const bool failed = !stream || ferror(stream);
+  return (stream && fclose(stream) == 0 && !failed) ||
+         status_fail(status, DELBM_FAILED, "out of memory: the fingerprint of the case");
+}

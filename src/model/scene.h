@@ -1,0 +1,192 @@
+/* What is simulated: the case in memory, as read, with every default filled in. Lattice units (dx = dt = 1, reference
+ * density 1). Nothing here depends on how a case is written down (src/case) or run (sim). */
+#ifndef DELBM_MODEL_SCENE_H
+#define DELBM_MODEL_SCENE_H
+
+#include "base/status.h"
+#include "lattice/units.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* The fastest that a disc's rim or a fluid may be set to move, for the Mach number's sake; cells/step. */
+static const double scene_most_speed = 0.3;
+
+/* The most that is advised, Mach 0.17: errors of compressibility grow with the square of the Mach number. cells/step. */
+static const double scene_advised_speed = 0.1;
+
+enum side_name { SIDE_LEFT, SIDE_RIGHT, SIDE_BOTTOM, SIDE_TOP, SIDE_COUNT };
+enum side_type { SIDE_WALL, SIDE_PERIODIC, SIDE_INLET, SIDE_OUTLET };
+enum collision { COLLISION_BGK, COLLISION_TRT, COLLISION_MRT, COLLISION_ADAPTIVE };
+enum precision { PRECISION_DOUBLE, PRECISION_SINGLE };
+enum coupling_form { FORM_UNIFIED, FORM_OWEN, FORM_MIDPOINT, FORM_COUNT };
+enum coupling_solve { SOLVE_IMPLICIT, SOLVE_EXPLICIT_AVERAGED };
+enum contact_area { AREA_LENS, AREA_CELLS };
+enum contact_search { SEARCH_GRID, SEARCH_LINKED_CELL };
+enum contact_damping { DAMPING_CRITICAL, DAMPING_PRINTED };
+enum frame_quantity { FRAME_SPEED, FRAME_VORTICITY };
+enum frame_discs { FRAME_DISCS_PLAIN, FRAME_DISCS_HEIGHT, FRAME_DISCS_SPEED, FRAME_DISCS_RADIUS };
+
+/* One side of the box. `velocity` is that of a wall or of the fluid at an inlet. */
+struct side {
+  enum side_type type;
+  double velocity[2];
+};
+
+/* How a disc moves. */
+enum disc_motion {
+  DISC_FREE,  /* by the forces on it */
+  DISC_FIXED, /* stays in place; may spin at a prescribed rate */
+  DISC_DRIVEN /* moves with its prescribed velocity and spin */
+};
+
+struct disc_spec {
+  double radius;
+  double density;
+  double position[2];
+  double velocity[2];
+  double angle; /* radians, counter-clockwise */
+  double spin;  /* radians a step, counter-clockwise */
+  enum disc_motion motion;
+};
+
+/* Discs on a square grid of the given spacing, each displaced by up to `jitter` cells in x and in y. */
+struct fill_spec {
+  bool present;
+  double spacing;
+  double radius;
+  double density;
+  double jitter;
+  double region[4]; /* x0, y0, x1, y1 */
+  uint64_t seed;
+};
+
+/* The rates of the one collision kernel (of the paper's (3): s_e = s_eps, s_q, s_nu). */
+struct rates {
+  double s_nu; /* of pxx and pxy: 1/(3 viscosity + 1/2) */
+  double s_e;  /* of e and eps */
+  double s_q;  /* of qx and qy where fluid rests, or everywhere */
+  double
+      s_q_fast; /* where its speed is far above viscosity/cell, with the mean of both at that speed; 0: s_q everywhere */
+};
+
+struct scene {
+  char *title;
+  char *name; /* of the case: the folder's or the file's, for the default output directory */
+
+  struct units units; /* what the lattice stands for; dx = 0: not given */
+
+  struct {
+    int size[2];
+    struct side side[SIDE_COUNT];
+  } domain;
+
+  struct {
+    double viscosity;
+    double force[2]; /* per unit mass */
+    enum collision collision;
+    struct rates rates;
+    enum precision precision;
+    bool zero_flux;
+    char *kernel; /* forced kernel variant, or NULL for the best that the machine runs */
+  } fluid;
+
+  struct {
+    enum coupling_form form;
+    enum coupling_solve solve;
+  } coupling;
+
+  struct {
+    double gravity[2];
+    struct fill_spec fill;
+    size_t count;            /* the listed discs, then those of `fill` */
+    size_t listed;           /* of which listed one by one */
+    struct disc_spec *discs; /* [count] */
+  } particles;
+
+  struct {
+    enum contact_area area;
+    enum contact_search search;
+    double edge; /* of the linked cells; 0: one diameter */
+    double stiffness;
+    double alpha;
+    double damping;
+    enum contact_damping damping_form;
+    int substeps;             /* fixed number of sub-steps a step, 0: chosen from the stiffness */
+    double steps_per_contact; /* what that choice aims for */
+  } contact;
+
+  struct {
+    int64_t steps;
+    int check; /* steps between two looks for divergence, 1 to 100 */
+    struct {
+      int depth; /* steps in a block of the sweep, 0: chosen by measurement */
+      int width; /* cells of its tiles, 0: whole rows */
+    } plan;
+  } run;
+
+  struct {
+    int64_t every; /* steps between rows of particles.csv; 0: none */
+    struct {
+      int64_t every; /* 0: only when interrupted */
+    } checkpoint;
+    struct {
+      int64_t every;    /* 0: none */
+      double region[4]; /* x0, y0, x1, y1: whole numbers */
+      int stride;
+    } fields;
+    struct {
+      int64_t every; /* 0: none */
+      enum frame_quantity quantity;
+      double maximum; /* value at the end of the colour scale; 0: the largest of each frame */
+      enum frame_discs discs;
+    } frames;
+  } output;
+};
+
+/* Releases what the scene holds (not the struct itself). */
+void scene_clear(struct scene *scene);
+
+/* Appends the discs of particles.fill to the listed ones, drawing the displacements from GSL's generator mt19937 with
+ * the case's seed: row by row from the lower left, x before y. */
+bool scene_fill(struct scene *scene, struct status *status);
+
+/* Relaxation rate of the stress for a kinematic viscosity. */
+static inline double rate_from_viscosity(double viscosity)
+{
+  return 1.0 / (3.0 * viscosity + 0.5);
+}
+
+/* Rate s_q for which (1/s_q - 1/2)(1/s_nu - 1/2) = magic. */
+static inline double rate_from_magic(double magic, double viscosity)
+{
+  return 1.0 / (0.5 + magic / (3.0 * viscosity));
+}
+
+/* As in the keys of a case. */
+static inline const char *side_name_text(enum side_name side)
+{
+  static const char *const names[SIDE_COUNT] = {
+      [SIDE_LEFT] = "left", [SIDE_RIGHT] = "right", [SIDE_BOTTOM] = "bottom", [SIDE_TOP] = "top"};
+  return names[side];
+}
+
+static inline bool scene_is_periodic(const struct scene *scene, int axis)
+{
+  return scene->domain.side[axis == 0 ? SIDE_LEFT : SIDE_BOTTOM].type == SIDE_PERIODIC;
+}
+
+static inline int64_t scene_cells(const struct scene *scene)
+{
+  return (int64_t)scene->domain.size[0] * scene->domain.size[1];
+}
+
+/* True where walls (resting or moving along themselves) close the axis, so that its mean volume flux is zero. */
+static inline bool scene_is_closed(const struct scene *scene, int axis)
+{
+  const struct side *low = &scene->domain.side[axis == 0 ? SIDE_LEFT : SIDE_BOTTOM];
+  const struct side *high = &scene->domain.side[axis == 0 ? SIDE_RIGHT : SIDE_TOP];
+  return low->type == SIDE_WALL && high->type == SIDE_WALL;
+}
+
+#endif
