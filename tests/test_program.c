@@ -170,6 +170,8 @@ Test(program, exit_codes_tell_what_went_wrong)
   cr_expect_eq(shell("%s run 2>err", DELBM), 2);
   cr_expect_eq(shell("%s rum good.yaml 2>err", DELBM), 2);
   cr_expect_eq(shell("%s run good.yaml --quite 2>err", DELBM), 2);
+  cr_expect_eq(shell("%s run good.yaml bad.yaml 2>err", DELBM), 2);
+  cr_expect_eq(shell("%s --version good.yaml 2>err", DELBM), 2);
   cr_expect_eq(shell("%s run bad.yaml 2>err", DELBM), 3);
   cr_expect(contains("err", "bad.yaml:2:9: unknown key fluid.viscosty; did you mean fluid.viscosity?"));
   cr_expect_eq(shell("%s info bad.yaml >/dev/null 2>&1", DELBM), 3);
@@ -356,6 +358,31 @@ Test(program, the_manual_page_has_every_command)
                      "while read name; do grep -qi \"^\\.SH $name\" %s || exit 1; done <names",
                      BUILD_DIR "/src/cli/delbm.1"),
                0);
+}
+
+/* Options in the lines of a command's help and, of all commands, in completion and in the manual page. */
+Test(program, each_option_is_accepted_and_stands_in_help_completion_and_manual_page)
+{
+  cr_assert_eq(shell("$DELBM --help | awk '/^commands/ {on = 1; next} /^$/ {on = 0} on {print $1}' >names && "
+                     "for name in $(cat names); do $DELBM $name --help | sed -n 's/^  \\(--[a-z-]*\\).*/\\1/p' | sort "
+                     ">help.$name && grep -qx -- --help help.$name || exit 1; done"),
+               0);
+  cr_expect_eq(
+      shell("test $(cat help.* | wc -l) -ge 20 && $DELBM completion bash >script && for name in $(cat names); do "
+            "sed -n \"s/^ *$name) options='\\(.*\\)' ;;/\\1/p\" script | tr ' ' '\\n' | sort | cmp - help.$name || "
+            "exit 1; done"),
+      0);
+  cr_expect_eq(shell("for name in $(cat names); do for option in $(cat help.$name); do "
+                     "$DELBM $name $option x --help 2>err >out </dev/null; ! grep unknown err || exit 1; done; done"),
+               0);
+  const char *const page = BUILD_DIR "/src/cli/delbm.1";
+  if (access(page, R_OK) != 0) cr_skip_test("built without scdoc");
+  cr_expect_eq(
+      shell("for name in $(cat names); do awk -v name=$name '/^\\.SH/ {on = tolower($2) == name} on' %s | "
+            "tr -d '\\\\' >section && for option in $(cat help.$name); do grep -q -- \"^  *$option\" section || "
+            "exit 1; done || exit 1; done",
+            page),
+      0);
 }
 
 /* The case `dkt`, shortened, and the program by its name, as the README's lines expect them. */

@@ -1,5 +1,5 @@
 #include "cli/commands.h"
-#include "cli/options.h"
+#include "cli/report.h"
 
 #include "bench.h"
 #include "fluid/sweep.h"
@@ -7,30 +7,6 @@
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
-
-enum { OPTION_LIST = OPTION_OWN, OPTION_JSON, OPTION_QUICK };
-
-const struct option bench_options[] = {{"list", no_argument, NULL, OPTION_LIST},
-                                       {"json", required_argument, NULL, OPTION_JSON},
-                                       {"quick", no_argument, NULL, OPTION_QUICK},
-                                       {"help", no_argument, NULL, OPTION_HELP},
-                                       {0}};
-
-static void print_help(void)
-{
-  puts("usage: delbm bench [NAME]... [--list] [--json FILE] [--quick]\n"
-       "\n"
-       "Measures on this machine, with OMP_NUM_THREADS threads. Without a NAME all benchmarks run: half an hour, or "
-       "about\n"
-       "a minute with --quick. Each verifies what it measures; where that fails the others still run, and the exit\n"
-       "code is 1.\n"
-       "\n"
-       "  --list       the benchmarks and the kernels, and which kernels this machine runs\n"
-       "  --json FILE  also writes the figures to FILE; of a benchmark that failed the message, as \"failed\"\n"
-       "  --quick      the same work and verification, with smaller sizes, fewer cases or fewer repetitions: seconds "
-       "each\n"
-       "  --help       this text");
-}
 
 static void print_list(void)
 {
@@ -47,7 +23,7 @@ static void print_list(void)
 static const struct bench *find(const char *name)
 {
   const struct bench *bench;
-  struct suggestion suggestion = {.given = name};
+  struct suggestion suggestion = {.typed = name};
   for (size_t k = 0; (bench = bench_at(k)); k++) {
     if (strcmp(bench->name, name) == 0) return bench;
     suggestion_consider(&suggestion, bench->name);
@@ -135,17 +111,18 @@ static bool choose(char **names, int count, bool chosen[])
   return true;
 }
 
-static int run_benches(char **names, int count, bool quick, const char *path)
+static int run_benches(struct arguments *arguments)
 {
   struct status status;
+  const char *path = arguments->json;
   bool chosen[BENCHES_MOST] = {false};
   FILE *json = NULL;
-  if (!choose(names, count, chosen)) return DELBM_USAGE;
+  if (!choose(arguments->operands, arguments->operand_count, chosen)) return DELBM_USAGE;
   if (path && !(json = fopen(path, "w"))) {
     status_fail(&status, DELBM_IO, "cannot write %s: %s", path, strerror(errno));
     return report_error(&status);
   }
-  const int code = run_chosen(chosen, quick, json);
+  const int code = run_chosen(chosen, arguments->quick, json);
   if (!json) return code;
   const bool failed = ferror(json);
   if (fclose(json) == 0 && !failed) return code;
@@ -153,27 +130,24 @@ static int run_benches(char **names, int count, bool quick, const char *path)
   return report_error(&status);
 }
 
-int command_bench(int argc, char **argv)
-{
-  const char *path = NULL;
-  bool quick = false;
-  for (int option; (option = option_next(argc, argv, bench_options)) != OPTION_END;) {
-    switch (option) {
-    case OPTION_LIST:
-      print_list();
-      return DELBM_OK;
-    case OPTION_JSON:
-      path = optarg;
-      break;
-    case OPTION_QUICK:
-      quick = true;
-      break;
-    case OPTION_HELP:
-      print_help();
-      return DELBM_OK;
-    default:
-      return DELBM_USAGE;
-    }
-  }
-  return run_benches(argv + optind, argc - optind, quick, path);
-}
+const struct command command_bench = {
+    .name = "bench",
+    .purpose = "measure speed on this machine",
+    .operand_name = "[NAME]...",
+    .operand = OPERAND_WORDS,
+    .about = "Measures on this machine, with OMP_NUM_THREADS threads. Without a NAME all benchmarks run: half an hour, "
+             "or about\n"
+             "a minute with --quick. Each verifies what it measures; where that fails the others still run, and the "
+             "exit\n"
+             "code is 1.",
+    .options = {{"list", NULL, "the benchmarks and the kernels, and which kernels this machine runs",
+                 .kind = OPTION_PRINT, .print = print_list},
+                {"json", "FILE",
+                 "also writes the figures to FILE; of a benchmark that failed the message, as \"failed\"",
+                 .kind = OPTION_TEXT, .target = offsetof(struct arguments, json)},
+                {"quick", NULL,
+                 "the same work and verification, with smaller sizes, fewer cases or fewer repetitions: seconds each",
+                 .kind = OPTION_FLAG, .target = offsetof(struct arguments, quick)},
+                {"help", NULL, "this text", .kind = OPTION_HELP}},
+    .run = run_benches,
+};

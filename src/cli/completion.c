@@ -2,25 +2,10 @@
  * too, by its own emulation. Where nothing is offered (CASE, DIR, files) the shell completes names of files. */
 #include "case/case_keys.h"
 #include "cli/commands.h"
-#include "cli/options.h"
+#include "cli/report.h"
 
 #include <stdio.h>
 #include <string.h>
-
-const struct option completion_options[] = {{"help", no_argument, NULL, OPTION_HELP}, {0}};
-
-static void print_help(void)
-{
-  puts("usage: delbm completion bash|zsh\n"
-       "\n"
-       "Prints a script that makes the shell complete commands, options and the keys of --set. For this shell:\n"
-       "\n"
-       "  eval \"$(delbm completion bash)\"   or   eval \"$(delbm completion zsh)\"\n"
-       "\n"
-       "or put that line into ~/.bashrc or ~/.zshrc.\n"
-       "\n"
-       "  --help  this text");
-}
 
 static void print_commands(void)
 {
@@ -35,8 +20,8 @@ static void print_options(void)
   const struct command *command;
   for (size_t k = 0; (command = command_at(k)); k++) {
     printf("    %s) options='", command->name);
-    for (const struct option *option = command->options; option->name; option++)
-      printf("%s--%s", option == command->options ? "" : " ", option->name);
+    for (const struct option_row *row = command->options; row->name; row++)
+      printf("%s--%s", row == command->options ? "" : " ", row->name);
     printf("' ;;\n");
   }
 }
@@ -81,19 +66,27 @@ static void print_script(void)
        "complete -o default -F _delbm delbm");
 }
 
-int command_completion(int argc, char **argv)
+static int complete(struct arguments *arguments)
 {
-  for (int option; (option = option_next(argc, argv, completion_options)) != OPTION_END;) {
-    if (option != OPTION_HELP) return DELBM_USAGE;
-    print_help();
-    return DELBM_OK;
-  }
-  const char *shell = option_operand(argc, argv, "bash or zsh");
-  if (!shell) return DELBM_USAGE;
+  const char *shell = *arguments->operands;
   const bool zsh = strcmp(shell, "zsh") == 0;
   if (!zsh && strcmp(shell, "bash") != 0)
-    return usage_error(argv[0], "no completion for '%s', only for bash and zsh", shell);
+    return usage_error(arguments->command, "no completion for '%s', only for bash and zsh", shell);
   if (zsh) puts("autoload -Uz compinit bashcompinit && compinit && bashcompinit");
   print_script();
   return DELBM_OK;
 }
+
+const struct command command_completion = {
+    .name = "completion",
+    .purpose = "print what completes command lines in bash or zsh",
+    .operand_name = "bash|zsh",
+    .operand = OPERAND_WORD,
+    .about = "Prints a script that makes the shell complete commands, options and the keys of --set. For this shell:\n"
+             "\n"
+             "  eval \"$(delbm completion bash)\"   or   eval \"$(delbm completion zsh)\"\n"
+             "\n"
+             "or put that line into ~/.bashrc or ~/.zshrc.",
+    .options = {{"help", NULL, "this text", .kind = OPTION_HELP}},
+    .run = complete,
+};

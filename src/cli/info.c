@@ -1,6 +1,6 @@
 #include "cli/advice.h"
 #include "cli/commands.h"
-#include "cli/options.h"
+#include "cli/report.h"
 
 #include "base/memory.h"
 #include "base/threads.h"
@@ -16,23 +16,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-
-enum { OPTION_SET = OPTION_OWN };
-
-const struct option info_options[] = {
-    {"set", required_argument, NULL, OPTION_SET}, {"help", no_argument, NULL, OPTION_HELP}, {0}};
-
-static void print_help(void)
-{
-  puts("usage: delbm info CASE [--set key=value]...\n"
-       "\n"
-       "Shows what a case means, without running it: relaxation, expected speeds and Reynolds numbers, contacts, "
-       "memory,\n"
-       "and which stages of the step will run.\n"
-       "\n"
-       "  --set key=value  replaces a value of the case, as for `delbm run`\n"
-       "  --help           this text");
-}
 
 static void print_box(const struct scene *scene)
 {
@@ -286,8 +269,9 @@ static void print_stages(const struct scene *scene, const struct stages *stages)
          stages->force ? ", with force" : ", no force");
 }
 
-static int print_case(const struct scene *scene, struct case_errors *notes)
+static int print_case(struct arguments *arguments)
 {
+  const struct scene *scene = &arguments->scene;
   struct status status;
   const struct stages stages = stages_of(scene);
   const struct sweep_kernel *kernel = sweep_find(scene->fluid.kernel, scene->fluid.precision, &status);
@@ -297,7 +281,7 @@ static int print_case(const struct scene *scene, struct case_errors *notes)
   printf("case         %s%s%s\n", scene->name, *title ? ": " : "", title);
   print_box(scene);
   print_units(scene);
-  notes_print(notes, "  note: ", stdout);
+  notes_print(&arguments->notes, "  note: ", stdout);
   print_fluid(scene);
   print_speeds(scene);
   if (stages.exchange) print_discs(scene);
@@ -314,25 +298,15 @@ static int print_case(const struct scene *scene, struct case_errors *notes)
   return DELBM_OK;
 }
 
-int command_info(int argc, char **argv)
-{
-  struct settings settings = {0};
-  struct scene scene = {0};
-  for (int option; (option = option_next(argc, argv, info_options)) != OPTION_END;) {
-    const int code = option == OPTION_SET    ? settings_add(&settings, optarg, argc, argv)
-                     : option == OPTION_HELP ? DELBM_OK
-                                             : DELBM_USAGE;
-    if (option == OPTION_SET && code == DELBM_OK) continue;
-    if (option == OPTION_HELP) print_help();
-    free(settings.items);
-    return code;
-  }
-  struct case_errors notes = {0};
-  const char *path = option_operand(argc, argv, "CASE");
-  int code = path ? read_case(&scene, path, &settings, &notes) : DELBM_USAGE;
-  if (code == DELBM_OK) code = print_case(&scene, &notes);
-  case_errors_clear(&notes);
-  scene_clear(&scene);
-  free(settings.items);
-  return code;
-}
+const struct command command_info = {
+    .name = "info",
+    .purpose = "show a case and the plan of its run",
+    .operand_name = "CASE",
+    .operand = OPERAND_CASE,
+    .about = "Shows what a case means, without running it: relaxation, expected speeds and Reynolds numbers, contacts, "
+             "memory,\n"
+             "and which stages of the step will run.",
+    .options = {{"set", "key=value", "replaces a value of the case, as for `delbm run`", .kind = OPTION_SETTING},
+                {"help", NULL, "this text", .kind = OPTION_HELP}},
+    .run = print_case,
+};

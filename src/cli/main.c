@@ -1,6 +1,9 @@
 #include "base/c_locale.h"
+#include "case/case_file.h"
 #include "cli/commands.h"
 #include "cli/options.h"
+#include "cli/report.h"
+#include "output/file.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -30,7 +33,7 @@ static int print_help(void)
 static int unknown_word(const char *word)
 {
   static const char *const own[] = {"--help", "--version"};
-  struct suggestion suggestion = {.given = word};
+  struct suggestion suggestion = {.typed = word};
   const struct command *command;
   for (size_t k = 0; (command = command_at(k)); k++) suggestion_consider(&suggestion, command->name);
   for (size_t k = 0; k < sizeof own / sizeof own[0]; k++) suggestion_consider(&suggestion, own[k]);
@@ -39,12 +42,48 @@ static int unknown_word(const char *word)
   return usage_error(NULL, "unknown %s '%s'; did you mean '%s'?", kind, word, suggestion.nearest);
 }
 
+/* Reads the case that the command line names; prints all errors found. Returns DELBM_OK or the exit code. */
+static int read_case(const char *path, struct arguments *arguments)
+{
+  struct case_errors errors = {.notes = &arguments->notes};
+  const struct settings *settings = &arguments->settings;
+  struct status status;
+  const bool read = case_read(&arguments->scene, path, settings->items, settings->count, &errors, &status);
+  if (!read && case_errors_total(&errors) == 0) report_error(&status);
+  case_errors_print(&errors, stderr);
+  case_errors_clear(&errors);
+  return read ? DELBM_OK : (int)status.code;
+}
+
+static int read_results(const char *directory, struct arguments *arguments)
+{
+  struct status status;
+  char *path = file_join(directory, "case.yaml", &status);
+  if (!path) return report_error(&status);
+  const int code = read_case(path, arguments);
+  free(path);
+  return code;
+}
+
+static int run_command(const struct command *command, int argc, char **argv)
+{
+  struct arguments arguments = {0};
+  int code;
+  if (options_read(command, argc, argv, &arguments, &code)) {
+    if (command->operand == OPERAND_CASE) code = read_case(*arguments.operands, &arguments);
+    if (command->operand == OPERAND_RESULTS) code = read_results(*arguments.operands, &arguments);
+    if (code == DELBM_OK) code = command->run(&arguments);
+  }
+  arguments_clear(&arguments);
+  return code;
+}
+
 static int dispatch(int argc, char **argv)
 {
   if (argc < 2) return usage_error(NULL, "no command given");
   const struct command *command;
   for (size_t k = 0; (command = command_at(k)); k++)
-    if (strcmp(argv[1], command->name) == 0) return command->run(argc - 1, argv + 1);
+    if (strcmp(argv[1], command->name) == 0) return run_command(command, argc - 1, argv + 1);
   bool version = strcmp(argv[1], "--version") == 0, help = strcmp(argv[1], "--help") == 0;
   if (!version && !help) return unknown_word(argv[1]);
   if (argc > 2) return usage_error(NULL, "nothing may follow '%s', but '%s' does", argv[1], argv[2]);

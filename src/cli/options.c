@@ -2,46 +2,57 @@
 
 #include "base/memory.h"
 #include "base/words.h"
-#include "case/case_file.h"
+#include "cli/report.h"
 
-#include <stdarg.h>
-#include <stdio.h>
+#include <getopt.h>
 #include <stdlib.h>
 #include <string.h>
 
-int usage_error(const char *command, const char *format, ...)
+/* What getopt_long returns for row k of a table is OPTION_FIRST + k: above every character. */
+enum { OPTION_END = -1, OPTION_FIRST = 256 };
+
+/* "--name ARGUMENT" */
+static int print_option(const struct option_row *row, char *text, size_t room)
 {
-  const char *space = command ? " " : "", *name = command ? command : "";
-  va_list arguments;
-  va_start(arguments, format);
-  fprintf(stderr, "delbm%s%s: ", space, name);
-  vfprintf(stderr, format, arguments);
-  fprintf(stderr, " (see 'delbm%s%s --help')\n", space, name);
-  va_end(arguments);
-  return DELBM_USAGE;
+  return snprintf(text, room, "--%s%s%s", row->name, row->argument ? " " : "", row->argument ? row->argument : "");
 }
 
-int report_error(const struct status *status)
+static void print_usage(const struct command *command)
 {
-  fprintf(stderr, "delbm: %s\n", status->message);
-  return (int)status->code;
+  char option[64];
+  printf("usage: delbm %s %s", command->name, command->operand_name);
+  for (const struct option_row *row = command->options; row->name; row++) {
+    if (row->kind == OPTION_HELP) continue;
+    print_option(row, option, sizeof option);
+    printf(" [%s]%s", option, row->kind == OPTION_SETTING && !row->key ? "..." : "");
+  }
+  printf("\n\n%s\n\n", command->about);
 }
 
-void suggestion_consider(struct suggestion *suggestion, const char *word)
+static void print_help(const struct command *command)
 {
-  size_t distance = edit_distance(suggestion->given, word);
-  if (!words_are_near(suggestion->given, distance) || (suggestion->nearest && distance >= suggestion->distance)) return;
-  suggestion->nearest = word;
-  suggestion->distance = distance;
+  char option[64];
+  int width = 0;
+  print_usage(command);
+  for (const struct option_row *row = command->options; row->name; row++) {
+    const int length = print_option(row, NULL, 0);
+    if (length > width) width = length;
+  }
+  for (const struct option_row *row = command->options; row->name; row++) {
+    print_option(row, option, sizeof option);
+    for (const char *line = row->help; line; line = strchr(line, '\n') ? strchr(line, '\n') + 1 : NULL)
+      printf("  %-*s  %.*s\n", width, line == row->help ? option : "", (int)strcspn(line, "\n"), line);
+  }
+  if (command->notes) printf("\n%s\n", command->notes);
 }
 
-/* `word` is the option as given, perhaps with =value. */
+/* `word` is the option as typed, perhaps with =value. */
 static void report_unknown_option(const char *command, const char *word, const struct option *options)
 {
   char name[WORD_LENGTH];
   int length = (int)strcspn(word, "=");
   snprintf(name, sizeof name, "%.*s", length - 2, word + 2);
-  struct suggestion suggestion = {.given = name};
+  struct suggestion suggestion = {.typed = name};
   for (const struct option *option = options; option->name; option++) suggestion_consider(&suggestion, option->name);
   if (suggestion.nearest)
     usage_error(command, "unknown option '%.*s'; did you mean '--%s'?", length, word, suggestion.nearest);
@@ -49,11 +60,9 @@ static void report_unknown_option(const char *command, const char *word, const s
     usage_error(command, "unknown option '%.*s'", length, word);
 }
 
-int option_next(int argc, char **argv, const struct option *options)
+/* `option` is what getopt_long returned for the last word. */
+static void report_misused_option(int option, char **argv, const struct option *options)
 {
-  opterr = 0;
-  int option = getopt_long(argc, argv, ":", options, NULL);
-  if (option != '?' && option != ':') return option;
   const char *word = argv[optind - 1];
   if (option == ':')
     usage_error(argv[0], "option '%s' needs a value", word);
@@ -63,43 +72,77 @@ int option_next(int argc, char **argv, const struct option *options)
     usage_error(argv[0], "unknown option '-%c'", optopt);
   else
     report_unknown_option(argv[0], word, options);
-  return OPTION_BAD;
 }
 
-const char *option_operand(int argc, char **argv, const char *what)
+static int add_setting(const char *key, const char *text, struct arguments *arguments)
 {
-  if (argc - optind == 1) return argv[optind];
-  if (argc == optind)
-    usage_error(argv[0], "%s is missing", what);
-  else
-    usage_error(argv[0], "one %s at a time: '%s' is one word too many", what, argv[optind + 1]);
-  return NULL;
-}
-
-int settings_add(struct settings *settings, char *setting, int argc, char **argv)
-{
-  if (!strchr(setting, '=') || *setting == '=') return usage_error(argv[0], "'--set %s' is not key=value", setting);
+  struct settings *settings = &arguments->settings;
+  const size_t length = (key ? strlen(key) + 1 : 0) + strlen(text) + 1;
   struct status status;
-  if (!settings->items) settings->items = memory_allocate((size_t)argc, sizeof(char *), "the settings", &status);
-  if (!settings->items) return report_error(&status);
-  settings->items[settings->count++] = setting;
+  if (!key && (!strchr(text, '=') || *text == '='))
+    return usage_error(arguments->command, "'--set %s' is not key=value", text);
+  if (!memory_grow(&settings->items, &settings->capacity, settings->count + 1, sizeof(char *), "the settings", &status))
+    return report_error(&status);
+  char *item = memory_allocate(length, 1, "the settings", &status);
+  if (!item) return report_error(&status);
+  snprintf(item, length, "%s%s%s", key ? key : "", key ? "=" : "", text);
+  settings->items[settings->count++] = item;
   return DELBM_OK;
 }
 
-int read_case(struct scene *scene, const char *path, const struct settings *settings, struct case_errors *notes)
+/* Returns DELBM_OK, or the exit code of a mistake that it has reported. */
+static int take(const struct option_row *row, const char *text, struct arguments *arguments)
 {
-  struct case_errors errors = {.notes = notes};
-  struct status status;
-  bool read = case_read(scene, path, settings->items, settings->count, &errors, &status);
-  if (!read && case_errors_total(&errors) == 0) report_error(&status);
-  case_errors_print(&errors, stderr);
-  case_errors_clear(&errors);
-  return read ? DELBM_OK : (int)status.code;
+  void *target = (char *)arguments + row->target;
+  if (row->kind == OPTION_SETTING) return add_setting(row->key, text, arguments);
+  if (row->kind == OPTION_TEXT) memcpy(target, &text, sizeof text);
+  if (row->kind == OPTION_FLAG) *(bool *)target = true;
+  return DELBM_OK;
 }
 
-void notes_print(struct case_errors *notes, const char *before, FILE *file)
+static int check_operands(const struct command *command, const struct arguments *arguments)
 {
-  for (size_t i = 0; i < notes->count; i++) fprintf(file, "%s%s\n", before, notes->lines[i]);
-  if (notes->dropped > 0) fprintf(file, "%s%zu more values are rounded\n", before, notes->dropped);
-  case_errors_clear(notes);
+  if (command->operand == OPERAND_WORDS || arguments->operand_count == 1) return DELBM_OK;
+  if (arguments->operand_count == 0) return usage_error(command->name, "%s is missing", command->operand_name);
+  return usage_error(command->name, "one %s at a time: '%s' is one word too many", command->operand_name,
+                     arguments->operands[1]);
+}
+
+/* The options up to the first that ends the command; returns as options_read does. */
+static bool read_options(const struct command *command, int argc, char **argv, struct arguments *arguments, int *code)
+{
+  struct option list[OPTIONS_MAX] = {0};
+  for (int k = 0; command->options[k].name; k++)
+    list[k] = (struct option){command->options[k].name, command->options[k].argument ? required_argument : no_argument,
+                              NULL, OPTION_FIRST + k};
+  opterr = 0;
+  for (int option; (option = getopt_long(argc, argv, ":", list, NULL)) != OPTION_END;) {
+    *code = DELBM_USAGE;
+    if (option < OPTION_FIRST) report_misused_option(option, argv, list);
+    if (option < OPTION_FIRST) return false;
+    const struct option_row *row = &command->options[option - OPTION_FIRST];
+    *code = take(row, optarg, arguments);
+    if (row->kind == OPTION_HELP) print_help(command);
+    if (row->kind == OPTION_PRINT) row->print();
+    if (row->kind >= OPTION_HELP || *code != DELBM_OK) return false;
+  }
+  return true;
+}
+
+bool options_read(const struct command *command, int argc, char **argv, struct arguments *arguments, int *code)
+{
+  arguments->command = command->name;
+  if (!read_options(command, argc, argv, arguments, code)) return false;
+  arguments->operands = argv + optind;
+  arguments->operand_count = argc - optind;
+  *code = check_operands(command, arguments);
+  return *code == DELBM_OK;
+}
+
+void arguments_clear(struct arguments *arguments)
+{
+  for (size_t k = 0; k < arguments->settings.count; k++) free(arguments->settings.items[k]);
+  free(arguments->settings.items);
+  scene_clear(&arguments->scene);
+  case_errors_clear(&arguments->notes);
 }

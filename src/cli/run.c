@@ -1,85 +1,11 @@
 #include "case/case_keys.h"
 #include "cli/commands.h"
-#include "cli/options.h"
+#include "cli/report.h"
 #include "cli/session.h"
 #include "output/file.h"
 
 #include <stdlib.h>
 #include <sys/stat.h>
-
-struct run_request {
-  const char *path;
-  const char *directory; /* NULL: out/NAME */
-  struct settings settings;
-  char plan[64]; /* the setting that --plan stands for */
-  bool quiet;
-};
-
-enum { OPTION_OUT = OPTION_OWN, OPTION_SET, OPTION_PLAN, OPTION_QUIET, OPTION_HELP_KEYS };
-
-const struct option run_options[] = {{"out", required_argument, NULL, OPTION_OUT},
-                                     {"set", required_argument, NULL, OPTION_SET},
-                                     {"plan", required_argument, NULL, OPTION_PLAN},
-                                     {"quiet", no_argument, NULL, OPTION_QUIET},
-                                     {"help", no_argument, NULL, OPTION_HELP},
-                                     {"help-keys", no_argument, NULL, OPTION_HELP_KEYS},
-                                     {0}};
-
-static void print_help(void)
-{
-  puts("usage: delbm run CASE [--out DIR] [--set key=value]... [--plan DEPTH] [--quiet]\n"
-       "\n"
-       "Simulates a case: a YAML file, or a folder that holds case.yaml.\n"
-       "\n"
-       "  --out DIR        folder for the results (out/NAME, NAME being the case's folder or file);\n"
-       "                   files of an earlier run in it are replaced\n"
-       "  --set key=value  replaces a value of the case: --set domain.size=[512,512] --set output.every=200\n"
-       "  --plan DEPTH     steps in one pass through memory (run.plan.depth); 1 is unblocked, auto the fastest by "
-       "trial;\n"
-       "                   it changes nothing but the speed\n"
-       "  --quiet          no progress on stderr, only warnings and errors\n"
-       "  --help           this text\n"
-       "  --help-keys      every key of a case, what it means and what it may be\n"
-       "\n"
-       "DIR receives case.yaml (the case as run), particles.csv, fields.h5, frames/*.png and run.json. The last line\n"
-       "on stdout has the figures of run.json. An interrupt (Ctrl-C, SIGTERM, SIGHUP) ends the run after a\n"
-       "checkpoint, from which `delbm resume DIR` goes on.");
-}
-
-/* How far reading the command line got: run the case, or leave with an exit code. */
-enum { GO_ON = -1 };
-
-static int parse_options(int argc, char **argv, struct run_request *options)
-{
-  int code;
-  for (int option; (option = option_next(argc, argv, run_options)) != OPTION_END;) {
-    switch (option) {
-    case OPTION_OUT:
-      options->directory = optarg;
-      break;
-    case OPTION_SET:
-      if ((code = settings_add(&options->settings, optarg, argc, argv)) != DELBM_OK) return code;
-      break;
-    case OPTION_PLAN:
-      snprintf(options->plan, sizeof options->plan, "run.plan.depth=%s", optarg);
-      if ((code = settings_add(&options->settings, options->plan, argc, argv)) != DELBM_OK) return code;
-      break;
-    case OPTION_QUIET:
-      options->quiet = true;
-      break;
-    case OPTION_HELP:
-      print_help();
-      return DELBM_OK;
-    case OPTION_HELP_KEYS:
-      case_print_keys(stdout);
-      return DELBM_OK;
-    default:
-      return DELBM_USAGE;
-    }
-  }
-  options->path = option_operand(argc, argv, "CASE");
-  return options->path ? GO_ON : DELBM_USAGE;
-}
 
 static int run_scene(const struct scene *scene, const char *directory, bool quiet)
 {
@@ -112,38 +38,54 @@ static bool would_overwrite(const char *path, const char *directory)
   return same;
 }
 
-static int run_in_directory(const struct scene *scene, const struct run_request *options, const char *directory)
+static int run_in_directory(const struct arguments *arguments, const char *directory)
 {
-  if (would_overwrite(options->path, directory))
-    return usage_error("run", "the run would overwrite its own case, %s: choose another folder by --out",
-                       options->path);
-  return run_scene(scene, directory, options->quiet);
+  const char *path = *arguments->operands;
+  if (would_overwrite(path, directory))
+    return usage_error("run", "the run would overwrite its own case, %s: choose another folder by --out", path);
+  return run_scene(&arguments->scene, directory, arguments->quiet);
 }
 
-static int run_case(const struct run_request *options)
+static int run_case(struct arguments *arguments)
 {
-  struct scene scene = {0};
-  struct case_errors notes = {0};
-  int code = read_case(&scene, options->path, &options->settings, &notes);
-  if (code == DELBM_OK && !options->quiet) notes_print(&notes, "delbm: note: ", stderr);
-  case_errors_clear(&notes);
-  if (code != DELBM_OK) return code;
   struct status status;
-  char *standard = file_join("out", scene.name, &status);
-  if (standard)
-    code = run_in_directory(&scene, options, options->directory ? options->directory : standard);
-  else
-    code = report_error(&status);
+  if (!arguments->quiet) notes_print(&arguments->notes, "delbm: note: ", stderr);
+  char *standard = file_join("out", arguments->scene.name, &status);
+  if (!standard) return report_error(&status);
+  const int code = run_in_directory(arguments, arguments->out ? arguments->out : standard);
   free(standard);
-  scene_clear(&scene);
   return code;
 }
 
-int command_run(int argc, char **argv)
+static void print_keys(void)
 {
-  struct run_request options = {0};
-  int code = parse_options(argc, argv, &options);
-  if (code == GO_ON) code = run_case(&options);
-  free(options.settings.items);
-  return code;
+  case_print_keys(stdout);
 }
+
+const struct command command_run = {
+    .name = "run",
+    .purpose = "simulate a case",
+    .operand_name = "CASE",
+    .operand = OPERAND_CASE,
+    .about = "Simulates a case: a YAML file, or a folder that holds case.yaml.",
+    .options = {{"out", "DIR",
+                 "folder for the results (out/NAME, NAME being the case's folder or file);\n"
+                 "files of an earlier run in it are replaced",
+                 .kind = OPTION_TEXT, .target = offsetof(struct arguments, out)},
+                {"set", "key=value", "replaces a value of the case: --set domain.size=[512,512] --set output.every=200",
+                 .kind = OPTION_SETTING},
+                {"plan", "DEPTH",
+                 "steps in one pass through memory (run.plan.depth); 1 is unblocked, auto the fastest by trial;\n"
+                 "it changes nothing but the speed",
+                 .kind = OPTION_SETTING, .key = "run.plan.depth"},
+                {"quiet", NULL, "no progress on stderr, only warnings and errors", .kind = OPTION_FLAG,
+                 .target = offsetof(struct arguments, quiet)},
+                {"help", NULL, "this text", .kind = OPTION_HELP},
+                {"help-keys", NULL, "every key of a case, what it means and what it may be", .kind = OPTION_PRINT,
+                 .print = print_keys}},
+    .notes = "DIR receives case.yaml (the case as run), particles.csv, fields.h5, frames/*.png and run.json. The last "
+             "line\n"
+             "on stdout has the figures of run.json. An interrupt (Ctrl-C, SIGTERM, SIGHUP) ends the run after a\n"
+             "checkpoint, from which `delbm resume DIR` goes on.",
+    .run = run_case,
+};

@@ -1,7 +1,7 @@
 #include "cli/session.h"
 
 #include "base/clock.h"
-#include "cli/options.h"
+#include "cli/report.h"
 #include "output/progress.h"
 
 #include <inttypes.h>
