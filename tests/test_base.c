@@ -69,9 +69,23 @@ Test(memory, beyond_what_there_is_is_refused_in_words)
 {
   struct status status;
   cr_expect_not(memory_allocate(SIZE_MAX / 2, 4, "the moon", &status));
-  cr_expect(status.code == DELBM_FAILED && status.out_of_memory && strstr(status.message, "for the moon"), "%s",
+  cr_expect(status.code == DELBM_INVALID && status.out_of_memory && strstr(status.message, "for the moon"), "%s",
             status.message);
   cr_expect_not(memory_allocate(1, (size_t)(2 * memory_physical()), "the moon", &status));
+}
+
+Test(memory, in_use_counts_against_the_budget)
+{
+  struct status status;
+  const size_t size = (size_t)64 << 20;
+  const double before = memory_resident();
+  void *used = memory_allocate(1, size, "a test", &status);
+  cr_assert(used);
+  cr_expect_geq(memory_resident(), before + 0.9 * (double)size);
+  const size_t rest = (size_t)(memory_physical() - before - (double)size / 2);
+  cr_expect_not(memory_map(rest, "the moon", &status));
+  cr_expect(status.code == DELBM_INVALID && strstr(status.message, "for the moon beside "), "%s", status.message);
+  free(used);
 }
 
 /* A store in memory. */

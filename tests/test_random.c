@@ -4,7 +4,6 @@
 #include "case/case_file.h"
 #include "drive.h"
 #include "scenes.h"
-#include "sim/footprint.h"
 
 #include <gsl/gsl_rng.h>
 #include <math.h>
@@ -251,34 +250,6 @@ Test(random, scenes_hold_mass_and_momentum_or_are_refused_by_key_or_diverge_with
           fates[DIVERGED], fates[HELD]);
   cr_expect_gt(fates[HELD], scenes / 5);
   cr_expect_gt(fates[REFUSED], scenes / 5);
-}
-
-Test(memory, that_a_run_would_take_is_known_and_too_much_is_refused_by_key)
-{
-  struct status status;
-  struct scene scene = scene_box(1000, 1000, 0.1, SIDES_CLOSED);
-  const double mib = 1 << 20;
-  cr_expect(footprint_check(&scene, 90 * mib, &status));
-  cr_expect_not(footprint_check(&scene, 68 * mib, &status));
-  cr_expect_eq(status.code, DELBM_INVALID);
-  cr_expect(strstr(status.message, "domain.size: the run would take 0.0839 GiB of memory (fluid 0.0683, discs 0, "
-                                   "contacts 0, fields 0, frames 0, program 0.0156), and this machine has 0.0664"),
-            "%s", status.message);
-  scene.output.frames.every = 1; /* two fields of velocity, 15.3 MiB, and 8 MiB of program */
-  cr_expect(footprint_check(&scene, 110 * mib, &status), "%s", status.message);
-  cr_expect_not(footprint_check(&scene, 100 * mib, &status));
-  cr_expect(strstr(status.message, "frames 0.0149"), "%s", status.message);
-  scene.output.frames.every = 0;
-  scene.output.fields.every = scene.output.fields.stride = 1;
-  scene.output.fields.region[2] = scene.output.fields.region[3] = 1000;
-  cr_expect_not(footprint_check(&scene, 140 * mib, &status));
-  cr_expect(strstr(status.message, "fields 0.05"), "%s", status.message);
-  scene_clear(&scene);
-  scene = scene_box(100, 100, 0.1, SIDES_CLOSED);
-  for (int k = 0; k < 40; k++) scene_add_disc(&scene, 30, 1, 30 + k, 50);
-  cr_expect_not(footprint_check(&scene, mib, &status));
-  cr_expect(strstr(status.message, "particles: the run would take "), "%s", status.message);
-  scene_clear(&scene);
 }
 
 Test(fill, displaces_discs_evenly_to_all_sides_by_up_to_the_jitter)

@@ -1,6 +1,7 @@
 #include "base/memory.h"
 
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -14,9 +15,32 @@ double memory_physical(void)
   return (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
 }
 
+double memory_resident(void)
+{
+  FILE *file = fopen("/proc/self/statm", "re");
+  long pages = 0;
+  if (!file) return 0;
+  if (fscanf(file, "%*d %ld", &pages) != 1) pages = 0;
+  fclose(file);
+  return (double)pages * (double)sysconf(_SC_PAGESIZE);
+}
+
+static const double gib = 1 << 30;
+
 static bool out_of_memory(const char *what, double bytes, struct status *status)
 {
-  status_fail(status, DELBM_FAILED, "out of memory: %.3g GiB for %s", bytes / (1 << 30), what);
+  status_fail(status, DELBM_FAILED, "out of memory: %.3g GiB for %s", bytes / gib, what);
+  status->out_of_memory = true;
+  return false;
+}
+
+/* Fails, as an invalid case, for what the machine does not have. */
+static bool is_within_budget(const char *what, double bytes, struct status *status)
+{
+  const double resident = bytes < (double)huge_page ? 0 : memory_resident(), most = memory_physical();
+  if (resident + bytes <= most) return true;
+  status_fail(status, DELBM_INVALID, "too large for this machine: %.3g GiB for %s beside %.3g GiB in use, of %.3g GiB",
+              bytes / gib, what, resident / gib, most / gib);
   status->out_of_memory = true;
   return false;
 }
@@ -28,18 +52,16 @@ static size_t round_up(size_t n, size_t to)
 
 void *memory_allocate(size_t count, size_t size, const char *what, struct status *status)
 {
-  size_t bytes = 0;
-  void *pointer = NULL;
-  if (!__builtin_mul_overflow(count, size, &bytes) && (double)bytes <= memory_physical()) {
-    const size_t alignment = bytes < huge_page ? CACHE_LINE : huge_page;
-    bytes = bytes ? round_up(bytes, alignment) : CACHE_LINE;
-    pointer = aligned_alloc(alignment, bytes);
-    if (pointer && alignment == huge_page) madvise(pointer, bytes, MADV_HUGEPAGE);
-  }
+  const double wanted = (double)count * (double)size;
+  if (!is_within_budget(what, wanted, status)) return NULL;
+  const size_t alignment = count * size < huge_page ? CACHE_LINE : huge_page;
+  const size_t bytes = wanted > 0 ? round_up(count * size, alignment) : CACHE_LINE;
+  void *pointer = aligned_alloc(alignment, bytes);
   if (!pointer) {
-    out_of_memory(what, (double)count * (double)size, status);
+    out_of_memory(what, wanted, status);
     return NULL;
   }
+  if (alignment == huge_page) madvise(pointer, bytes, MADV_HUGEPAGE);
   return memset(pointer, 0, bytes);
 }
 
@@ -61,6 +83,7 @@ bool memory_grow(void *array, size_t *capacity, size_t count, size_t size, const
 
 void *memory_map(size_t bytes, const char *what, struct status *status)
 {
+  if (!is_within_budget(what, (double)bytes, status)) return NULL;
   size_t length = round_up(bytes, huge_page);
   char *pointer = mmap(NULL, length + huge_page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (pointer == MAP_FAILED) {

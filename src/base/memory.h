@@ -1,4 +1,9 @@
-/* Aligned, zeroed memory whose failure is reported in words, and huge pages for what is large. */
+/* Aligned, zeroed memory whose failure is reported in words, and huge pages for what is large.
+ *
+ * Budget. Linux promises more memory than there is and ends a process that uses it. A block of 2 MiB or more is therefore
+ * refused if it does not fit into the memory of the machine beside what is resident of this process: what the kernel counts,
+ * libraries and all threads included, so that no second account can differ from it. Memory that is mapped but not yet
+ * written does not count as resident; its owner writes it at once, or maps it last. */
 #ifndef DELBM_BASE_MEMORY_H
 #define DELBM_BASE_MEMORY_H
 
@@ -8,8 +13,8 @@
 
 enum { CACHE_LINE = 64 };
 
-/* count * size bytes, zeroed, aligned to a cache line; NULL with *status filled when it cannot be had: more than
- * the machine has is not asked for. `what` names the purpose in the message. A count of zero gives a valid pointer. Released by free(). */
+/* count * size bytes, zeroed, aligned to a cache line; NULL with *status filled when they cannot be had. `what` names the
+ * purpose in the message. A count of zero returns a valid pointer. Released by free(). */
 void *memory_allocate(size_t count, size_t size, const char *what, struct status *status);
 
 /* Grows *array to hold at least `count` elements of `size` bytes, keeping the first *capacity of them. */
@@ -22,6 +27,9 @@ void memory_unmap(void *pointer, size_t bytes);
 
 /* Memory of this machine, bytes. */
 double memory_physical(void);
+
+/* Memory of this process that is resident, bytes; 0 where the kernel does not say. */
+double memory_resident(void);
 
 /* Peak resident memory of this process, MiB. */
 double memory_peak_mib(void);

@@ -10,7 +10,7 @@
 #include "fluid/sweep.h"
 #include "sim/blocked.h"
 #include "sim/estimate.h"
-#include "sim/footprint.h"
+#include "sim/simulation.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -232,21 +232,38 @@ static void print_plan(const struct scene *scene)
            scene->run.plan.width);
 }
 
-static void print_memory(const struct scene *scene)
+/* Velocities of a frame and values of a snapshot; and what libpng and HDF5 were seen to take. */
+static double bytes_of_output(const struct scene *scene)
 {
-  const struct footprint footprint = footprint_of(scene);
+  enum { VALUES = 7 };
+  const double mib = 1 << 20;
+  double bytes = 0;
+  if (scene->output.frames.every > 0) bytes += 2 * sizeof(double) * (double)scene_cells(scene) + 8 * mib;
+  if (scene->output.fields.every > 0) {
+    const struct sample_grid grid = sample_grid_of(scene);
+    bytes += VALUES * sizeof(double) * (double)sample_points(&grid) + 12 * mib;
+  }
+  return bytes;
+}
+
+static bool print_memory(const struct scene *scene, struct status *status)
+{
   const double mib = 1 << 20, most = memory_physical();
-  printf("memory       fluid %.4g MiB (%.1f bytes a cell)", footprint.fluid / mib,
-         footprint.fluid / (double)scene_cells(scene));
+  struct simulation_memory memory;
+  const double program = memory_peak_mib() * mib;
+  if (!simulation_measure(scene, &memory, status)) {
+    if (status->code == DELBM_INVALID) printf("memory       %s\n", status->message);
+    return status->code == DELBM_INVALID;
+  }
+  const double output = bytes_of_output(scene), all = program + memory.populations + memory.tables + output;
+  printf("memory       program %.4g MiB, fluid %.4g MiB (%.1f bytes a cell)", program / mib, memory.populations / mib,
+         memory.populations / (double)scene_cells(scene));
   if (scene->particles.count > 0)
-    printf(", discs %.4g MiB (%.0f bytes a disc)", footprint.discs / mib,
-           footprint.discs / (double)scene->particles.count);
-  if (footprint.contacts > 0) printf(", contacts %.4g MiB", footprint.contacts / mib);
-  if (footprint.fields > 0) printf(", fields %.4g MiB", footprint.fields / mib);
-  if (footprint.frames > 0) printf(", frames %.4g MiB", footprint.frames / mib);
-  printf(", in all %.4g MiB\n", footprint_total(&footprint) / mib);
-  if (footprint_total(&footprint) > most)
-    printf("  note: more than the %.4g MiB of this machine; it would not be run here\n", most / mib);
+    printf(", discs %.4g MiB (%.0f bytes a disc)", memory.tables / mib, memory.tables / (double)scene->particles.count);
+  if (output > 0) printf(", output %.4g MiB", output / mib);
+  printf(", in all about %.4g MiB\n", all / mib);
+  if (all > most) printf("  note: more than the %.4g MiB of this machine; it would not be run here\n", most / mib);
+  return true;
 }
 
 static void print_stages(const struct scene *scene, const struct stages *stages)
@@ -293,7 +310,7 @@ static int print_case(struct arguments *arguments)
   printf("run          %" PRId64 " steps, %d threads (%s), kernel %s\n", scene->run.steps,
          threads_for(scene_cells(scene)), binding, kernel->name);
   print_plan(scene);
-  print_memory(scene);
+  if (!print_memory(scene, &status)) return report_error(&status);
   print_stages(scene, &stages);
   return DELBM_OK;
 }

@@ -31,7 +31,7 @@ static size_t plane_size(int nx, int ny, enum precision precision)
   return round_up(row_pitch(nx, precision) * ((size_t)ny + 2), 64 * line) + 7 * line;
 }
 
-size_t populations_bytes(int nx, int ny, enum precision precision)
+static size_t populations_bytes(int nx, int ny, enum precision precision)
 {
   size_t slack = 2 * populations_line(precision); /* a vector may be read past the end of the last row */
   return (Q * plane_size(nx, ny, precision) + slack) * value_size(precision);
@@ -47,17 +47,16 @@ bool populations_create(struct populations *p, int nx, int ny, bool periodic_y, 
                             .pitch = row_pitch(nx, precision),
                             .plane = plane_size(nx, ny, precision),
                             .bytes = populations_bytes(nx, ny, precision)};
-  p->block = memory_map(p->bytes, "the populations", status);
-  if (!p->block) return false;
-  const size_t row = p->pitch * value_size(precision);
-#pragma omp parallel for schedule(static) num_threads(threads_for((int64_t)nx *ny))
-  for (int y = 0; y < ny; y++) {
-    for (size_t i = 0; i < Q; i++) {
-      char *plane = (char *)p->block + i * p->plane * value_size(precision);
-      memset(plane + (size_t)(y + 1) * row, 0, row);
-    }
-  }
-  return true;
+  p->block = memory_map(p->bytes, "the populations (domain.size)", status);
+  return p->block != NULL;
+}
+
+void populations_rest(struct populations *p)
+{
+  const size_t size = value_size(p->precision), row = p->pitch * size;
+#pragma omp parallel for schedule(static) num_threads(threads_for((int64_t)p->nx * p->ny))
+  for (int y = 0; y < p->ny; y++)
+    for (size_t i = 0; i < Q; i++) memset((char *)p->block + i * p->plane * size + (size_t)(y + 1) * row, 0, row);
 }
 
 void populations_destroy(struct populations *p)

@@ -34,16 +34,16 @@ struct populations {
   size_t bytes;
 };
 
-/* Fluid at rest at the reference density. First touch is by rows, as the sweep's threads share them. */
+/* Fluid at rest at the reference density, to which nothing has been written. */
 bool populations_create(struct populations *populations, int nx, int ny, bool periodic_y, enum precision precision,
                         struct status *status);
+
+/* Fluid at rest again, before the first step. First touch is by rows, as the threads of the sweep share them. */
+void populations_rest(struct populations *populations);
 void populations_destroy(struct populations *populations);
 
 /* Saves or restores the populations and their parity. Ghosts are left out: boundary_refill makes them again. */
 bool populations_store(struct populations *populations, struct store *store, struct status *status);
-
-/* Bytes that populations_create would map. */
-size_t populations_bytes(int nx, int ny, enum precision precision);
 
 /* Values in a cache line, which is also the room before x = 0 in each row. */
 static inline size_t populations_line(enum precision precision)

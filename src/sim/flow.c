@@ -122,7 +122,7 @@ static void set_row(struct flow *f, flow_initial *initial, const void *context, 
 
 void flow_start(struct flow *f, flow_initial *initial, const void *context, const struct sweep_discs *discs)
 {
-  /* populations begin as fluid at rest */
+  populations_rest(&f->populations);
   const bool all = initial || f->constants.force[0] != 0 || f->constants.force[1] != 0;
   for (int y = 0; y < f->populations.ny; y++) set_row(f, initial ? initial : at_rest, context, all, y, discs);
   boundary_reset(&f->boundary, &f->populations);

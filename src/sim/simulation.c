@@ -6,7 +6,6 @@
 #include "sim/diagnostics.h"
 #include "sim/divergence.h"
 #include "sim/flow.h"
-#include "sim/footprint.h"
 #include "sim/motion.h"
 #include "sim/tuning.h"
 
@@ -102,27 +101,23 @@ void simulation_start(struct simulation *s, flow_initial *initial, const void *c
   conserved_momentum(s, s->initial_momentum);
 }
 
-bool simulation_create(struct simulation **simulation, const struct scene *scene, struct status *status)
+/* The populations last: nothing is written to them yet, and all else is in the budget by then. */
+static struct simulation *create(const struct scene *scene, struct status *status)
 {
-  *simulation = NULL;
-  if (!footprint_check(scene, memory_physical(), status)) return false;
   struct simulation *s = memory_allocate(1, sizeof *s, "the simulation", status);
-  *simulation = s;
-  if (!s) return false;
+  if (!s) return NULL;
   s->scene = scene;
   s->stages = stages_of(scene);
-  if (!flow_create(&s->flow, scene, &s->stages, status) || !create_discs(s, status)) {
-    simulation_destroy(s);
-    *simulation = NULL;
-    return false;
-  }
-  if (!paint(s, status)) {
-    simulation_destroy(s);
-    *simulation = NULL;
-    return false;
-  }
-  simulation_start(s, NULL, NULL);
-  return true;
+  if (create_discs(s, status) && paint(s, status) && flow_create(&s->flow, scene, &s->stages, status)) return s;
+  simulation_destroy(s);
+  return NULL;
+}
+
+bool simulation_create(struct simulation **simulation, const struct scene *scene, struct status *status)
+{
+  *simulation = create(scene, status);
+  if (*simulation) simulation_start(*simulation, NULL, NULL);
+  return *simulation;
 }
 
 void simulation_destroy(struct simulation *s)
@@ -164,30 +159,57 @@ static bool discs_stay_within(struct simulation *s, const struct occupation *nex
   return !s->discs_left_rows;
 }
 
-/* One step of these rows, by all threads of the parallel region; false where they are to leave it unfinished. The
- * exchange precedes the contacts so that these, and their sub-steps, act through the same response as the fluid does; and
- * discs are painted where they have just moved before the sweep, so that the sweep can take the sums of the next
- * exchange. */
+/* Stages 1 to 3 of a step, by all threads of the parallel region; false where they are to leave it unfinished. The exchange
+ * precedes the contacts so that these, and their sub-steps, act through the same response as the fluid does; and discs are
+ * painted where they have just moved before the sweep, so that the sweep can take the sums of the next exchange. */
+static bool step_discs(struct simulation *s, struct occupation *next, double *since)
+{
+  struct occupation *now = present(s);
+  if (!stage_exchange(&s->exchange, &s->flow.constants, now, &s->discs, s->step, &s->team)) return false;
+  charge(s, STAGE_EXCHANGE, since);
+  if (!stage_contact(&s->contacts, now, &s->exchange, &s->discs, &s->team)) return false;
+  charge(s, STAGE_CONTACT, since);
+  if (!stage_motion(&s->contacts, &s->exchange, &s->discs, s->step, &s->team)) return false;
+  charge(s, STAGE_EXCHANGE, since);
+  if (next != now && !stage_occupation(next, &s->discs, &s->team)) return false;
+  charge(s, STAGE_OCCUPATION, since);
+  return true;
+}
+
+/* Occupation of the coming step: where no disc moves, that of this one. */
+static struct occupation *next_occupation(struct simulation *s)
+{
+  return s->stages.occupation == OCCUPATION_EVERY_STEP ? &s->occupations[!s->present] : present(s);
+}
+
+/* One step of these rows, as step_discs. */
 static bool step(struct simulation *s, const struct rows *rows, double *since)
 {
   struct sweep_discs discs = {0};
   if (s->stages.exchange) {
-    const bool moving = s->stages.occupation == OCCUPATION_EVERY_STEP;
-    struct occupation *now = present(s), *next = moving ? &s->occupations[!s->present] : now;
-    if (!stage_exchange(&s->exchange, &s->flow.constants, now, &s->discs, s->step, &s->team)) return false;
-    charge(s, STAGE_EXCHANGE, since);
-    if (!stage_contact(&s->contacts, now, &s->exchange, &s->discs, &s->team)) return false;
-    charge(s, STAGE_CONTACT, since);
-    if (!stage_motion(&s->contacts, &s->exchange, &s->discs, s->step, &s->team)) return false;
-    charge(s, STAGE_EXCHANGE, since);
-    if (moving && !stage_occupation(next, &s->discs, &s->team)) return false;
-    charge(s, STAGE_OCCUPATION, since);
-    if (!discs_stay_within(s, next, rows)) return false;
-    discs = (struct sweep_discs){.now = now, .exchange = &s->exchange, .next = next};
+    struct occupation *next = next_occupation(s);
+    if (!step_discs(s, next, since) || !discs_stay_within(s, next, rows)) return false;
+    discs = (struct sweep_discs){.now = present(s), .exchange = &s->exchange, .next = next};
   }
   stage_sweep(&s->flow, rows, &discs);
   charge(s, STAGE_SWEEP, since);
   return true;
+}
+
+bool simulation_measure(const struct scene *scene, struct simulation_memory *memory, struct status *status)
+{
+  const double mib = 1 << 20, before = memory_peak_mib() * mib;
+  struct simulation *s = create(scene, status);
+  if (!s) return false;
+  take_first_sums(s);
+  if (s->stages.exchange) {
+#pragma omp parallel num_threads(threads_for(scene_cells(scene)))
+    step_discs(s, next_occupation(s), &(double){clock_now()});
+  }
+  *memory = (struct simulation_memory){(double)s->flow.populations.bytes, memory_peak_mib() * mib - before};
+  const bool good = simulation_usable(s, status);
+  simulation_destroy(s);
+  return good;
 }
 
 /* Steps of a scene that is blocked in time: blocks of equal length, none deeper than the tuning says. */

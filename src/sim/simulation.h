@@ -19,6 +19,14 @@ struct simulation;
 bool simulation_create(struct simulation **simulation, const struct scene *scene, struct status *status);
 void simulation_destroy(struct simulation *simulation);
 
+/* Memory of a simulation of the scene, bytes. Measured: all tables are created, and the discs take one step, through fluid at
+ * rest to which nothing is written, so that its pages are only promised. Costs one step without its sweep. */
+struct simulation_memory {
+  double populations;
+  double tables; /* by how much the resident memory of the process has grown at its peak */
+};
+bool simulation_measure(const struct scene *scene, struct simulation_memory *memory, struct status *status);
+
 /* Before the first step: starts from another state of the fluid than rest. */
 void simulation_start(struct simulation *simulation, flow_initial *initial, const void *context);
 

@@ -14,24 +14,6 @@ static size_t most_lines(double radius)
   return (size_t)ceil(2 * radius) + 2;
 }
 
-/* Cells that a disc can touch: those within half a cell's diagonal, and one more all round. */
-static double most_cells(double radius)
-{
-  return ceil(M_PI * (radius + 1.5) * (radius + 1.5));
-}
-
-double occupation_bytes(const struct scene *scene)
-{
-  const size_t row = sizeof(struct run) + sizeof(struct moment_sums) + 2 * sizeof(size_t);
-  const size_t disc = 3 * sizeof(double) + 5 * sizeof(int32_t) + sizeof(size_t) + 2 * sizeof(uint32_t) + 1;
-  double bytes = 0;
-  for (size_t i = 0; i < scene->particles.count; i++) {
-    const double radius = scene->particles.discs[i].radius;
-    bytes += most_cells(radius) * sizeof(double) + (double)(most_lines(radius) * row + disc);
-  }
-  return bytes;
-}
-
 static bool allocate(struct occupation *o, size_t rows, struct status *status)
 {
   const char *what = "the occupation tables";

@@ -106,9 +106,6 @@ bool occupation_create(struct occupation *occupation, const struct scene *scene,
                        struct status *status);
 void occupation_destroy(struct occupation *occupation);
 
-/* Bytes that occupation_create would take. */
-double occupation_bytes(const struct scene *scene);
-
 /* The stage, called by all threads of a parallel region or outside of one. Bands whose discs have not moved since they were
  * painted are not painted again. Fails if memory runs out. */
 bool stage_occupation(struct occupation *occupation, const struct discs *discs, struct team *team);
