@@ -1,6 +1,7 @@
 #include "case/case_errors.h"
 #include "case/case_file.h"
 #include "case/case_keys.h"
+#include "case/case_reference.h"
 #include "case/case_value.h"
 #include "case/case_write.h"
 #include "model/scene.h"

@@ -1,4 +1,5 @@
-#include "api/handle.h"
+#include "api/discs.h"
+
 #include "base/memory.h"
 
 #include <math.h>

@@ -1,7 +1,9 @@
 /* Discs driven by callbacks. A callback sets the velocity before the step, which then runs as for any driven disc and
  * reports what the fluid hands over. The fluid inside takes part in the change of velocity; as for free discs
  * (exchange.h) the force on the solid has m_f dV added for it. */
-#include "api/handle.h"
+#include "api/drive.h"
+
+#include "api/discs.h"
 #include "base/memory.h"
 
 static struct drive *find(struct delbm_simulation *s, size_t disc)

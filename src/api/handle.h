@@ -40,19 +40,4 @@ enum delbm_code api_leave(struct api_call *call, bool good);
 /* The same for a case with errors, if there are any: as many of them as there is room for. */
 enum delbm_code api_leave_case(struct api_call *call, bool good, const struct case_errors *errors);
 
-/* Fails unless first .. first + count - 1 are discs. */
-bool api_has_discs(const struct delbm_simulation *simulation, size_t first, size_t count, struct status *status);
-
-/* Fails unless the disc may have this velocity and spin. */
-bool api_allows_motion(const struct delbm_simulation *simulation, size_t disc, const double velocity[2], double spin,
-                       struct status *status);
-
-/* The disc as it is now. */
-struct delbm_disc_state api_disc_state(const struct discs *discs, size_t disc);
-
-/* Before a step and after it: asks the callbacks, in the caller's locale, and sets what they ask for, or nothing if one of
- * them asks for too much; makes the forces whole. */
-bool api_drive_begin(struct delbm_simulation *simulation, struct api_call *call);
-void api_drive_end(struct delbm_simulation *simulation);
-
 #endif

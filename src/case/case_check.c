@@ -2,6 +2,7 @@
 
 #include "base/memory.h"
 #include "case/case_overlaps.h"
+#include "case/case_query.h"
 #include "case/case_units.h"
 #include "model/fill_grid.h"
 

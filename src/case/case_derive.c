@@ -1,5 +1,7 @@
 #include "case/case_derive.h"
 
+#include "case/case_query.h"
+
 #include <string.h>
 
 static const double default_magic = 3.0 / 16.0;

@@ -2,9 +2,9 @@
 
 #include "base/words.h"
 #include "case/case_draft.h"
-#include "case/case_value.h"
 
 #include <stdint.h>
+#include <stdio.h>
 #include <string.h>
 
 _Static_assert(sizeof(enum side_type) == sizeof(int), "a choice is stored as an int");
@@ -137,26 +137,4 @@ bool key_nearest(const char *section, const char *name, char path[KEY_PATH])
     }
   }
   return nearest.distance < SIZE_MAX;
-}
-
-static void print_fallback(const struct key *key, FILE *file)
-{
-  if (key_is_required(key))
-    fputs("required", file);
-  else
-    fprintf(file, "default %s", key_has_default(key) ? key->fallback : "as follows");
-}
-
-void case_print_keys(FILE *file)
-{
-  for (size_t i = 0; i < table_count; i++) {
-    const struct key *key = &table[i];
-    char allowed[VALUE_TEXT];
-    value_describe(key, allowed);
-    fprintf(file, "%s\n    %s", key->path, allowed);
-    if (*key->unit) fprintf(file, "; %s", key->unit);
-    fputs("; ", file);
-    print_fallback(key, file);
-    fprintf(file, "\n    %s\n", key->help);
-  }
 }

@@ -4,7 +4,6 @@
 
 #include <stdbool.h>
 #include <stddef.h>
-#include <stdio.h>
 
 enum { KEY_PATH = 96 }; /* room for the path of any key or section in the table */
 
@@ -53,8 +52,5 @@ void key_names(const char *section, char *text, size_t size);
 
 /* The path of the key, section or list in the table that may be meant by `name` in a section. False if none is near. */
 bool key_nearest(const char *section, const char *name, char path[KEY_PATH]);
-
-/* Prints the key reference: every key with what is allowed, its unit, its default and a line of help. */
-void case_print_keys(FILE *file);
 
 #endif

@@ -1,6 +1,7 @@
 #include "case/case_units.h"
 
 #include "case/case_keys.h"
+#include "case/case_query.h"
 #include "case/case_value.h"
 
 #include <string.h>

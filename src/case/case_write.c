@@ -125,46 +125,46 @@ static void write_line(const struct key *key, const char *indent, const char *na
   fputc('\n', file);
 }
 
-/* Rows of the table that form a section. */
-struct rows {
+/* A section of the table: its keys stand together. */
+struct section {
   const struct key *keys;
   size_t count;
-  char section[KEY_PATH];
+  char path[KEY_PATH];
 };
 
-/* Writes the rows as a flow mapping after `before`; nothing if every key is left out. */
-static void write_flow(const struct rows *rows, const struct scene *scene, const void *owner, const char *before,
+/* Writes the section as a flow mapping after `before`; nothing if every key is left out. */
+static void write_flow(const struct section *section, const struct scene *scene, const void *owner, const char *before,
                        FILE *file)
 {
   bool any = false;
-  for (size_t i = 0; i < rows->count; i++) {
-    const struct key *key = &rows->keys[i];
+  for (size_t i = 0; i < section->count; i++) {
+    const struct key *key = &section->keys[i];
     char value[VALUE_TEXT];
     value_format(key, owner, value);
     if (is_idle(key, scene) || (is_optional(key) && strcmp(value, key->fallback) == 0)) continue;
-    fprintf(file, "%s%s: %s", any ? ", " : before, key_within(key->path, rows->section), value);
+    fprintf(file, "%s%s: %s", any ? ", " : before, key_within(key->path, section->path), value);
     any = true;
   }
   if (any) fputs("}\n", file);
 }
 
-static void write_discs(const struct rows *rows, const struct scene *scene, FILE *file)
+static void write_discs(const struct section *section, const struct scene *scene, FILE *file)
 {
   if (scene->particles.listed > 0) fputs("  discs:\n", file);
   for (size_t i = 0; i < scene->particles.listed; i++) {
     const struct disc_spec *spec = &scene->particles.discs[i];
     const struct disc_draft disc = {*spec, spec->motion == DISC_FIXED, spec->motion == DISC_DRIVEN};
-    write_flow(rows, scene, &disc, "    - {", file);
+    write_flow(section, scene, &disc, "    - {", file);
   }
 }
 
-/* The rows from the first on that share its section. */
-static struct rows section_rows(const struct key *first, const struct key *end)
+/* The section that starts with the key `first`. */
+static struct section section_of(const struct key *first, const struct key *end)
 {
-  struct rows rows = {.keys = first};
-  snprintf(rows.section, sizeof rows.section, "%.*s", (int)(strrchr(first->path, '.') - first->path), first->path);
-  for (const struct key *key = first; key < end && key_within(key->path, rows.section); key++) rows.count++;
-  return rows;
+  struct section section = {.keys = first};
+  snprintf(section.path, sizeof section.path, "%.*s", (int)(strrchr(first->path, '.') - first->path), first->path);
+  for (const struct key *key = first; key < end && key_within(key->path, section.path); key++) section.count++;
+  return section;
 }
 
 /* Writes the key, or the section within a section that starts with it; returns how many rows that took. */
@@ -175,15 +175,15 @@ static size_t write_rows(const struct draft *draft, const struct key *key, const
     if (!is_idle(key, &draft->scene)) write_line(key, dot ? "  " : "", dot ? dot + 1 : key->path, draft, file);
     return 1;
   }
-  const struct rows rows = section_rows(key, end);
-  if (strstr(rows.section, "[]")) {
-    write_discs(&rows, &draft->scene, file);
+  const struct section section = section_of(key, end);
+  if (strstr(section.path, "[]")) {
+    write_discs(&section, &draft->scene, file);
   } else {
     char before[KEY_PATH + 8];
-    snprintf(before, sizeof before, "  %s: {", strchr(rows.section, '.') + 1);
-    write_flow(&rows, &draft->scene, draft, before, file);
+    snprintf(before, sizeof before, "  %s: {", strchr(section.path, '.') + 1);
+    write_flow(&section, &draft->scene, draft, before, file);
   }
-  return rows.count;
+  return section.count;
 }
 
 /* True for the sections that decide what the numbers of a run are and mean. */

@@ -15,7 +15,8 @@ struct settings {
 /* A command line, and the case that it names. A command uses what its own options and operand fill in. */
 struct arguments {
   const char *command;
-  char **operands; /* [operand_count] */
+  const struct command *const *commands; /* all there are, in the order of the help, ended by NULL */
+  char **operands;                       /* [operand_count] */
   int operand_count;
   const char *out, *json; /* NULL: not stated */
   struct settings settings;
@@ -57,8 +58,8 @@ struct command {
   int (*run)(struct arguments *arguments); /* returns an exit code of delbm/status.h */
 };
 
-/* The commands, in the order of the help; NULL past the last. */
-const struct command *command_at(size_t k);
+/* In the order of the help, ended by NULL. */
+extern const struct command *const commands[];
 
 extern const struct command command_run, command_resume, command_info, command_analyse, command_plot, command_bench,
     command_completion;

@@ -7,21 +7,19 @@
 #include <stdio.h>
 #include <string.h>
 
-static void print_commands(void)
+static void print_commands(const struct command *const *all)
 {
-  const struct command *command;
   printf("    COMPREPLY=($(compgen -W '--help --version");
-  for (size_t k = 0; (command = command_at(k)); k++) printf(" %s", command->name);
+  for (; *all; all++) printf(" %s", (*all)->name);
   printf("' -- \"$word\"))\n");
 }
 
-static void print_options(void)
+static void print_options(const struct command *const *all)
 {
-  const struct command *command;
-  for (size_t k = 0; (command = command_at(k)); k++) {
-    printf("    %s) options='", command->name);
-    for (const struct option_row *row = command->options; row->name; row++)
-      printf("%s--%s", row == command->options ? "" : " ", row->name);
+  for (; *all; all++) {
+    printf("    %s) options='", (*all)->name);
+    for (const struct option_row *row = (*all)->options; row->name; row++)
+      printf("%s--%s", row == (*all)->options ? "" : " ", row->name);
     printf("' ;;\n");
   }
 }
@@ -40,14 +38,14 @@ static void print_keys(void)
   printf("' -- \"$word\"))\n");
 }
 
-static void print_script(void)
+static void print_script(const struct command *const *all)
 {
   puts("# completion of delbm, written by `delbm completion`\n"
        "_delbm() {\n"
        "  local word=\"${COMP_WORDS[COMP_CWORD]}\" before=\"${COMP_WORDS[COMP_CWORD-1]}\" options=\n"
        "  COMPREPLY=()\n"
        "  if [ \"$COMP_CWORD\" = 1 ]; then");
-  print_commands();
+  print_commands(all);
   puts("    return\n"
        "  fi\n"
        "  if [ \"$before\" = --set ]; then");
@@ -56,7 +54,7 @@ static void print_script(void)
        "    return\n"
        "  fi\n"
        "  case \"${COMP_WORDS[1]}\" in");
-  print_options();
+  print_options(all);
   puts("  esac\n"
        "  case \"${COMP_WORDS[1]},$word\" in\n"
        "    *,-*) COMPREPLY=($(compgen -W \"$options\" -- \"$word\")) ;;\n"
@@ -73,7 +71,7 @@ static int complete(struct arguments *arguments)
   if (!zsh && strcmp(shell, "bash") != 0)
     return usage_error(arguments->command, "no completion for '%s', only for bash and zsh", shell);
   if (zsh) puts("autoload -Uz compinit bashcompinit && compinit && bashcompinit");
-  print_script();
+  print_script(arguments->commands);
   return DELBM_OK;
 }
 

@@ -21,8 +21,7 @@ static int print_help(void)
        "Flows with discs in them, by the lattice Boltzmann method.\n"
        "\n"
        "commands (each has its own --help):");
-  const struct command *command;
-  for (size_t k = 0; (command = command_at(k)); k++) printf("  %-11s %s\n", command->name, command->purpose);
+  for (const struct command *const *c = commands; *c; c++) printf("  %-11s %s\n", (*c)->name, (*c)->purpose);
   puts("\n"
        "The number of threads is that of OMP_NUM_THREADS; it does not change results.\n"
        "Exit codes: 0 done, 1 run failed (diverged), 2 usage, 3 invalid case, 4 input/output,\n"
@@ -34,8 +33,7 @@ static int unknown_word(const char *word)
 {
   static const char *const own[] = {"--help", "--version"};
   struct suggestion suggestion = {.typed = word};
-  const struct command *command;
-  for (size_t k = 0; (command = command_at(k)); k++) suggestion_consider(&suggestion, command->name);
+  for (const struct command *const *c = commands; *c; c++) suggestion_consider(&suggestion, (*c)->name);
   for (size_t k = 0; k < sizeof own / sizeof own[0]; k++) suggestion_consider(&suggestion, own[k]);
   const char *kind = *word == '-' ? "option" : "command";
   if (!suggestion.nearest) return usage_error(NULL, "unknown %s '%s'", kind, word);
@@ -67,7 +65,7 @@ static int read_results(const char *directory, struct arguments *arguments)
 
 static int run_command(const struct command *command, int argc, char **argv)
 {
-  struct arguments arguments = {0};
+  struct arguments arguments = {.command = command->name, .commands = commands};
   int code;
   if (options_read(command, argc, argv, &arguments, &code)) {
     if (command->operand == OPERAND_CASE) code = read_case(*arguments.operands, &arguments);
@@ -81,9 +79,8 @@ static int run_command(const struct command *command, int argc, char **argv)
 static int dispatch(int argc, char **argv)
 {
   if (argc < 2) return usage_error(NULL, "no command given");
-  const struct command *command;
-  for (size_t k = 0; (command = command_at(k)); k++)
-    if (strcmp(argv[1], command->name) == 0) return run_command(command, argc - 1, argv + 1);
+  for (const struct command *const *c = commands; *c; c++)
+    if (strcmp(argv[1], (*c)->name) == 0) return run_command(*c, argc - 1, argv + 1);
   bool version = strcmp(argv[1], "--version") == 0, help = strcmp(argv[1], "--help") == 0;
   if (!version && !help) return unknown_word(argv[1]);
   if (argc > 2) return usage_error(NULL, "nothing may follow '%s', but '%s' does", argv[1], argv[2]);

@@ -131,7 +131,6 @@ static bool read_options(const struct command *command, int argc, char **argv, s
 
 bool options_read(const struct command *command, int argc, char **argv, struct arguments *arguments, int *code)
 {
-  arguments->command = command->name;
   if (!read_options(command, argc, argv, arguments, code)) return false;
   arguments->operands = argv + optind;
   arguments->operand_count = argc - optind;

@@ -4,7 +4,7 @@
 
 #include "cli/commands.h"
 
-/* Fills in all but scene and notes. False where the command is not to run: its help has been printed, or a mistake in the
+/* Fills in operands, settings and the values of options. False where the command is not to run: its help has been printed, or a mistake in the
  * command line; *code is then the exit code. argv[0] is the command's name. */
 bool options_read(const struct command *command, int argc, char **argv, struct arguments *arguments, int *code);
 

@@ -1,4 +1,4 @@
-#include "case/case_keys.h"
+#include "case/case_reference.h"
 #include "cli/commands.h"
 #include "cli/report.h"
 #include "cli/session.h"

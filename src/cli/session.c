@@ -11,7 +11,7 @@
 /* The signal that asked the run to end, read between chunks of steps. A signal handler has no other way to speak. */
 static volatile sig_atomic_t stop_requested;
 
-struct run {
+struct session_state {
   const struct scene *scene;
   const char *directory;
   struct simulation *simulation;
@@ -46,7 +46,7 @@ static enum delbm_code code_of_signal(int signal_number)
 }
 
 /* Tells a diverged simulation from a full disk or memory. */
-static bool fail(struct run *run)
+static bool fail(struct session_state *run)
 {
   struct status ignored;
   bool diverged =
@@ -55,12 +55,12 @@ static bool fail(struct run *run)
   return false;
 }
 
-static bool record(struct run *run, bool last)
+static bool record(struct session_state *run, bool last)
 {
   return recorder_record(run->recorder, run->simulation, last, &run->status) || fail(run);
 }
 
-static bool advance(struct run *run, int64_t steps)
+static bool advance(struct session_state *run, int64_t steps)
 {
   if (simulation_advance(run->simulation, steps, &run->status)) return true;
   const bool diverged = run->status.code == DELBM_FAILED && !run->status.out_of_memory;
@@ -70,7 +70,7 @@ static bool advance(struct run *run, int64_t steps)
 
 /* Nothing but a checkpoint is written, and that before what is due at this step: the files stay the beginning of those of
  * a run that goes on. */
-static bool interrupt(struct run *run)
+static bool interrupt(struct session_state *run)
 {
   if (!recorder_checkpoint(run->recorder, run->simulation, &run->status)) return fail(run);
   run->outcome = OUTCOME_INTERRUPTED;
@@ -88,7 +88,7 @@ static int64_t next_chunk(int64_t chunk, int64_t steps, double seconds)
   return fitting < 1 ? 1 : fitting < (double)most ? (int64_t)fitting : most;
 }
 
-static bool run_steps(struct run *run)
+static bool run_steps(struct session_state *run)
 {
   int64_t end = run->scene->run.steps, step = simulation_step(run->simulation), chunk = 1;
   for (;;) {
@@ -106,7 +106,7 @@ static bool run_steps(struct run *run)
 }
 
 /* An error after the steps: it decides the outcome unless an earlier one did. */
-static void note_failure(struct run *run, const struct status *status)
+static void note_failure(struct session_state *run, const struct status *status)
 {
   if (run->outcome != OUTCOME_DONE) return;
   run->outcome = OUTCOME_FAILED;
@@ -114,7 +114,7 @@ static void note_failure(struct run *run, const struct status *status)
 }
 
 /* Why the run ended, in words. */
-static const char *reason_of(const struct run *run)
+static const char *reason_of(const struct session_state *run)
 {
   if (run->outcome == OUTCOME_DONE) return "all of run.steps are done";
   if (run->outcome != OUTCOME_INTERRUPTED) return run->status.message;
@@ -136,7 +136,7 @@ static void warn(const struct simulation_report *report, char warning[WARNING])
 }
 
 /* Closes the files and tells how the run ended: in run.json, on stdout and on stderr. */
-static void conclude(struct run *run)
+static void conclude(struct session_state *run)
 {
   struct status status;
   struct summary summary = {
@@ -168,10 +168,10 @@ static void announce(const struct scene *scene)
 
 int session_run(const struct session *session)
 {
-  struct run run = {.scene = session->scene,
-                    .directory = session->directory,
-                    .simulation = session->simulation,
-                    .recorder = session->recorder};
+  struct session_state run = {.scene = session->scene,
+                              .directory = session->directory,
+                              .simulation = session->simulation,
+                              .recorder = session->recorder};
   const enum progress_style style = session->quiet ? PROGRESS_NONE : progress_style(stderr);
   if (!session->quiet) announce(session->scene);
   listen_to_signals();

@@ -35,11 +35,11 @@ struct sampling {
 
 /* Buffers of one thread, of nx each but the last: density and velocity of a row, ux of the rows beside it, the part that
  * discs cover, and that of one disc. */
-struct rows {
+struct sample_rows {
   double *rho, *ux, *uy, *below, *above, *covered, *disc;
 };
 
-static void sample_row(const struct sampling *s, const struct rows *rows, int row)
+static void sample_row(const struct sampling *s, const struct sample_rows *rows, int row)
 {
   const struct populations *p = s->populations;
   const int y = s->grid->first[1] + row * s->grid->stride;
@@ -86,7 +86,8 @@ bool sample_take(const struct populations *p, const bool periodic[2], const stru
 #pragma omp parallel num_threads(threads)
   {
     double *own = buffers + (size_t)omp_get_thread_num() * each;
-    const struct rows rows = {own, own + nx, own + 2 * nx, own + 3 * nx, own + 4 * nx, own + 5 * nx, own + 6 * nx};
+    const struct sample_rows rows = {own,          own + nx,     own + 2 * nx, own + 3 * nx,
+                                     own + 4 * nx, own + 5 * nx, own + 6 * nx};
 #pragma omp for schedule(static)
     for (int row = 0; row < grid->count[1]; row++) sample_row(&sampling, &rows, row);
   }

@@ -1,4 +1,4 @@
-#include "case/case_draft.h"
+#include "case/case_query.h"
 
 #include "case/case_keys.h"
 
