@@ -3,7 +3,7 @@
 #include "accuracy.h"
 
 #include "contact/law.h"
-#include "contact/lens.h"
+#include "solid/lens.h"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_odeiv2.h>

@@ -4,11 +4,11 @@
  * bands anew. Each search's pairs are held against those of all pairs. */
 #include "base/clock.h"
 #include "bench.h"
-#include "contact/lens.h"
 #include "contact/linked_cell.h"
 #include "scenes.h"
 #include "sim/simulation.h"
 #include "sim/stages.h"
+#include "solid/lens.h"
 
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>

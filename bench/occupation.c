@@ -7,8 +7,8 @@
 #include "base/clock.h"
 #include "bench.h"
 #include "scenes.h"
-#include "solid/area.h"
 #include "solid/disc_area.h"
+#include "solid/solid_kernel.h"
 
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
@@ -29,7 +29,7 @@ struct painting {
   size_t cells;
 };
 
-static size_t rows_by_cells(double radius, double x, double y, int row, int rows, const struct area_extents *e,
+static size_t rows_by_cells(double radius, double x, double y, int row, int rows, const struct row_extents *e,
                             double *eps)
 {
   const int column = (int)floor(x - radius);
@@ -39,52 +39,52 @@ static size_t rows_by_cells(double radius, double x, double y, int row, int rows
   return n;
 }
 
-static size_t rows_by_lines(const struct area_kernel *area, double radius, double x, double y, int row, int rows,
-                            struct area_extents *e, bool rim, double *eps)
+static size_t rows_by_lines(const struct shape *disc, const struct pose *pose, int row, int rows, struct row_extents *e,
+                            bool rim, double *eps)
 {
   size_t n = 0;
   for (int r = 0; r < rows; r++) {
     n += (size_t)(e->end[r] - e->first[r]);
     if (!rim) e->full[r] = e->full_end[r] = e->end[r];
   }
-  area->rows(radius, x, y, row, 0, rows, e, eps);
+  disc->kind->fractions(disc, pose, row, 0, rows, e, eps);
   return n;
 }
 
-static void paint_disc(struct painting *p, const struct area_kernel *area, enum way way, int place)
+static void paint_disc(struct painting *p, const struct shape *disc, enum way way, int place)
 {
+  const struct pose pose = {.x = p->x[place], .y = p->y[place]};
   const double x = p->x[place], y = p->y[place];
   const int first = (int)floor(y - p->radius), end = (int)ceil(y + p->radius);
   p->cells = 0;
   for (int row = first; row < end; row += BAND_ROWS) {
     const int rows = end - row < BAND_ROWS ? end - row : BAND_ROWS;
-    struct area_extents e;
-    area->extents(p->radius, x, y, row, rows, &e);
-    p->cells += way == CELL_BY_CELL
-                    ? rows_by_cells(p->radius, x, y, row, rows, &e, p->eps + p->cells)
-                    : rows_by_lines(area, p->radius, x, y, row, rows, &e, way == RIM, p->eps + p->cells);
+    struct row_extents e;
+    disc->kind->extents(disc, &pose, row, rows, &e);
+    p->cells += way == CELL_BY_CELL ? rows_by_cells(p->radius, x, y, row, rows, &e, p->eps + p->cells)
+                                    : rows_by_lines(disc, &pose, row, rows, &e, way == RIM, p->eps + p->cells);
   }
 }
 
 /* Nanoseconds a disc. */
-static double time_disc(struct painting *p, const struct area_kernel *area, enum way way, double seconds)
+static double time_disc(struct painting *p, const struct shape *disc, enum way way, double seconds)
 {
   size_t painted = 0;
   const double start = clock_now();
   do {
-    for (int place = 0; place < DISC_PLACES; place++) paint_disc(p, area, way, place);
+    for (int place = 0; place < DISC_PLACES; place++) paint_disc(p, disc, way, place);
     painted += DISC_PLACES;
   } while (clock_now() - start < seconds);
   return 1e9 * (clock_now() - start) / (double)painted;
 }
 
 /* All ways paint the same, and the areas add up to the disc's. */
-static bool verify(struct painting *p, const struct area_kernel *area, struct status *status)
+static bool verify(struct painting *p, const struct shape *disc, struct status *status)
 {
   for (int place = 0; place < DISC_PLACES; place++)
     for (enum way way = 0; way < WAY_COUNT; way++) {
       double sum = 0;
-      paint_disc(p, area, way, place);
+      paint_disc(p, disc, way, place);
       for (size_t k = 0; k < p->cells; k++) sum += p->eps[k];
       const double error = fabs(sum / (M_PI * p->radius * p->radius) - 1);
       if (!(error < 1e-13 * fmax(100, p->radius)))
@@ -97,19 +97,19 @@ static bool verify(struct painting *p, const struct area_kernel *area, struct st
 static bool measure_disc(double radius, const struct bench_report *report, double ns[WAY_COUNT], struct status *status)
 {
   const size_t width = (size_t)ceil(2 * radius) + 3;
-  const struct area_kernel *area = area_find(NULL);
-  struct painting p = {.radius = radius, .eps = malloc((width * width + AREA_PAD) * sizeof *p.eps)};
+  const struct shape disc = {.kind = &solid_kernel_find(NULL)->disc, .radius = radius};
+  struct painting p = {.radius = radius, .eps = malloc((width * width + SHAPE_PAD) * sizeof *p.eps)};
   gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
   for (int k = 0; k < DISC_PLACES; k++) {
     p.x[k] = 1e4 + gsl_ran_flat(random, 0, 1);
     p.y[k] = 1e4 + gsl_ran_flat(random, 0, 1);
   }
-  const bool ok = p.eps ? verify(&p, area, status)
+  const bool ok = p.eps ? verify(&p, &disc, status)
                         : status_fail(status, DELBM_IO, "bench occupation: no memory for a disc of R = %g", radius);
   double samples[WAY_COUNT][REPEATS];
   for (int r = 0; ok && r < REPEATS; r++)
     for (enum way way = 0; way < WAY_COUNT; way++)
-      samples[way][r] = time_disc(&p, area, way, report->quick ? 1e-4 : 0.02);
+      samples[way][r] = time_disc(&p, &disc, way, report->quick ? 1e-4 : 0.02);
   for (enum way way = 0; ok && way < WAY_COUNT; way++) ns[way] = gsl_stats_median(samples[way], 1, REPEATS);
   gsl_rng_free(random);
   free(p.eps);

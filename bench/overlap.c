@@ -4,8 +4,8 @@
 #include "contact/overlap.h"
 #include "base/team.h"
 #include "bench.h"
-#include "contact/lens.h"
 #include "scenes.h"
+#include "solid/lens.h"
 #include "solid/occupation.h"
 
 #include <gsl/gsl_fit.h>

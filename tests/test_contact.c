@@ -1,11 +1,11 @@
 /* Contact: overlap areas, the force law, and whole impacts of discs with discs and walls. */
 #include "case/case_overlaps.h"
 #include "contact/law.h"
-#include "contact/lens.h"
 #include "contact/overlap.h"
 #include "drive.h"
 #include "scenes.h"
 #include "sim/contact_memory.h"
+#include "solid/lens.h"
 
 #include <criterion/criterion.h>
 #include <gsl/gsl_rng.h>

@@ -1,7 +1,7 @@
 #include "analysis/settling.h"
 
 #include "base/memory.h"
-#include "contact/lens.h"
+#include "solid/lens.h"
 
 #include <gsl/gsl_sort.h>
 #include <math.h>

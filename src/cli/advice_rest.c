@@ -3,8 +3,8 @@
 #include "cli/advice.h"
 
 #include "contact/law.h"
-#include "contact/lens.h"
 #include "sim/estimate.h"
+#include "solid/lens.h"
 
 #include <math.h>
 #include <stdio.h>

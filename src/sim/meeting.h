@@ -2,9 +2,9 @@
 #ifndef DELBM_SIM_MEETING_H
 #define DELBM_SIM_MEETING_H
 
-#include "contact/lens.h"
 #include "coupling/exchange.h"
 #include "sim/contact_memory.h"
+#include "solid/lens.h"
 
 struct contact {
   uint32_t a, b;       /* discs; b from contact_sides on: a side */

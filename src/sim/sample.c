@@ -4,7 +4,6 @@
 #include "base/threads.h"
 #include "fluid/vorticity.h"
 #include "sim/diagnostics.h"
-#include "solid/area.h"
 #include "solid/occupation.h"
 
 #include <math.h>
@@ -70,7 +69,7 @@ static size_t widest_row(const struct discs *discs)
 {
   double radius = 0;
   for (size_t i = 0; i < discs->count; i++) radius = fmax(radius, discs->radius[i]);
-  return (size_t)ceil(2 * radius) + 2 + AREA_PAD;
+  return (size_t)ceil(2 * radius) + 2 + SHAPE_PAD;
 }
 
 bool sample_take(const struct populations *p, const bool periodic[2], const struct fluid_force *force,

@@ -1,7 +1,7 @@
 #include "sim/stages.h"
 
 #include "contact/law.h"
-#include "contact/lens.h"
+#include "solid/lens.h"
 
 #include <math.h>
 

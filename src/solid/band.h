@@ -3,8 +3,8 @@
 #ifndef DELBM_SOLID_BAND_H
 #define DELBM_SOLID_BAND_H
 
-#include "solid/area.h"
 #include "solid/occupation.h"
+#include "solid/solid_kernel.h"
 
 /* What a run is besides its cells: those that make discs candidates, the run's own widened by the reach; where its eps
  * begin; and where place[] keeps its number in the band. */

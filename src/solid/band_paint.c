@@ -4,9 +4,9 @@
 
 #include <math.h>
 
-_Static_assert(BAND_ROWS + 2 <= AREA_ROWS, "the rows of a band, and one beyond on each side");
+_Static_assert(BAND_ROWS + 2 <= SHAPE_ROWS, "the rows of a band, and one beyond on each side");
 
-enum { SLACK = AREA_PAD }; /* elements past a band's last share that kernels may touch */
+enum { SLACK = SHAPE_PAD }; /* elements past a band's last share that kernels may touch */
 
 /* Rows of one disc, or of one periodic image of it, in one band. */
 struct stretch {
@@ -37,7 +37,7 @@ static bool stretch_of(const struct occupation *o, const struct discs *discs, in
 }
 
 /* The columns by which row k of the disc makes it a candidate: those of its rows within reach, widened by the reach. */
-static void reach_columns(const struct occupation *o, const struct stretch *s, const struct area_extents *e, int k,
+static void reach_columns(const struct occupation *o, const struct stretch *s, const struct row_extents *e, int k,
                           int *first, int *end)
 {
   const int reach = o->reach;
@@ -109,7 +109,7 @@ static bool enter_piece(const struct occupation *o, struct band *band, struct ba
 
 /* The runs of row k of the disc, whose cells begin at `cell`: at most two pieces. */
 static void enter_row(const struct occupation *o, struct band *band, struct band_draft *draft, const struct stretch *s,
-                      const struct area_extents *e, int k, size_t cell)
+                      const struct row_extents *e, int k, size_t cell)
 {
   const int column = o->column[s->disc], at = k - s->reach_from;
   const bool own = k >= 0 && k < o->rows[s->disc];
@@ -130,7 +130,7 @@ static void enter_row(const struct occupation *o, struct band *band, struct band
 
 /* enter_row for rows from .. end - 1 of a disc inside the box, where runs reach no further than their cells: nearly all. */
 static void enter_rows_inside(const struct occupation *o, struct band *band, struct band_draft *draft,
-                              const struct stretch *s, const struct area_extents *e, int from, int end, size_t cell)
+                              const struct stretch *s, const struct row_extents *e, int from, int end, size_t cell)
 {
   const double left = o->column[s->disc] + 0.5 - o->x[s->disc], low = o->row[s->disc] + 0.5 - o->y[s->disc];
   for (int k = from; k < end; k++) {
@@ -148,17 +148,18 @@ static bool paint_stretch(struct occupation *o, struct band *band, struct band_d
                           const struct stretch *s, size_t *cells, struct status *status)
 {
   const size_t disc = s->disc;
-  const double radius = discs->radius[disc], x = o->x[disc], y = o->y[disc];
+  const struct shape *shape = &discs->shape[disc];
+  const struct pose pose = discs_pose(discs, disc);
   const int rows = o->rows[disc], own = s->from > 0 ? s->from : 0, own_end = s->end < rows ? s->end : rows;
-  struct area_extents e;
-  o->area->extents(radius, x, y, o->row[disc] + s->reach_from, s->reach_end - s->reach_from, &e);
+  struct row_extents e;
+  shape->kind->extents(shape, &pose, o->row[disc] + s->reach_from, s->reach_end - s->reach_from, &e);
   size_t end = *cells;
   for (int k = own; k < own_end; k++) end += (size_t)(e.end[k - s->reach_from] - e.first[k - s->reach_from]);
   if (!memory_grow(&draft->eps, &draft->eps_capacity, end + SLACK, sizeof *draft->eps, "a band's cells", status))
     return false;
   if (own < own_end)
-    o->area->rows(radius, x, y, o->row[disc] + s->reach_from, own - s->reach_from, own_end - s->reach_from, &e,
-                  draft->eps + *cells);
+    shape->kind->fractions(shape, &pose, o->row[disc] + s->reach_from, own - s->reach_from, own_end - s->reach_from, &e,
+                           draft->eps + *cells);
   size_t cell = *cells;
   *cells = end;
   if (s->inside && o->reach == 0) {
@@ -199,7 +200,7 @@ static void lay_out_run(const struct occupation *o, const struct run *run, int y
 {
   const double damping = o->damping[run->disc];
   const int last = run->n - 1;
-  o->area->weights(eps, run->n, occupation_law(o, damping, occupation_row_at_side(o, y)), share);
+  o->kernel->weights(eps, run->n, occupation_law(o, damping, occupation_row_at_side(o, y)), share);
   if (o->periodic[0] || (run->x > 0 && run->x + last < o->size[0] - 1)) return;
   if (occupation_at_side(o, run->x, y)) share[0] = weight_of(occupation_law(o, damping, true), eps[0]);
   if (occupation_at_side(o, run->x + last, y)) share[last] = weight_of(occupation_law(o, damping, true), eps[last]);

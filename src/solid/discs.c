@@ -1,8 +1,8 @@
 #include "solid/discs.h"
 
 #include "base/memory.h"
+#include "solid/solid_kernel.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 enum { DOUBLE_ARRAYS = 17 };
@@ -18,14 +18,15 @@ static void carve(struct discs *d, char *block, size_t stride)
   d->motion = (uint8_t *)(block + DOUBLE_ARRAYS * stride);
 }
 
-static void set_disc(struct discs *d, size_t i, const struct disc_spec *spec)
+static void set_disc(struct discs *d, size_t i, const struct shape_kind *kind, const struct disc_spec *spec)
 {
-  const double r2 = spec->radius * spec->radius;
+  const struct shape shape = {.kind = kind, .radius = spec->radius};
+  d->shape[i] = shape;
   d->radius[i] = spec->radius;
-  d->fluid_mass[i] = M_PI * r2;
+  d->fluid_mass[i] = kind->area(&shape);
   d->mass[i] = spec->density * d->fluid_mass[i];
-  d->fluid_inertia[i] = d->fluid_mass[i] * r2 / 2;
-  d->inertia[i] = d->mass[i] * r2 / 2;
+  d->fluid_inertia[i] = d->fluid_mass[i] * kind->gyration2(&shape);
+  d->inertia[i] = d->mass[i] * kind->gyration2(&shape);
   d->motion[i] = (uint8_t)spec->motion;
   d->x[i] = spec->position[0];
   d->y[i] = spec->position[1];
@@ -42,17 +43,23 @@ bool discs_create(struct discs *discs, const struct scene *scene, struct status 
   const size_t count = scene->particles.count;
   *discs = (struct discs){.count = count};
   if (count == 0) return true;
+  const struct solid_kernel *kernel = solid_kernel_find(scene->fluid.kernel);
   const size_t stride = (count * sizeof(double) + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE;
   discs->block = memory_allocate(DOUBLE_ARRAYS + 1, stride, "the discs", status);
-  if (!discs->block) return false;
+  discs->shape = memory_allocate(count, sizeof *discs->shape, "the discs", status);
+  if (!discs->block || !discs->shape) {
+    discs_destroy(discs);
+    return false;
+  }
   carve(discs, discs->block, stride);
-  for (size_t i = 0; i < count; i++) set_disc(discs, i, &scene->particles.discs[i]);
+  for (size_t i = 0; i < count; i++) set_disc(discs, i, &kernel->disc, &scene->particles.discs[i]);
   return true;
 }
 
 void discs_destroy(struct discs *discs)
 {
   free(discs->block);
+  free(discs->shape);
   *discs = (struct discs){0};
 }
 

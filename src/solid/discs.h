@@ -5,12 +5,14 @@
 
 #include "base/store.h"
 #include "model/scene.h"
+#include "solid/shape.h"
 
 struct discs {
   size_t count;
-  double *radius;
-  double *mass, *fluid_mass;       /* rho_s pi R^2, rho_f pi R^2 */
-  double *inertia, *fluid_inertia; /* m R^2/2 */
+  struct shape *shape;
+  double *radius;                  /* of the shape's smallest circle about its centroid (shape.h) */
+  double *mass, *fluid_mass;       /* density times area: of the solid, of the fluid that it displaces */
+  double *inertia, *fluid_inertia; /* those masses times the square of the radius of gyration */
   uint8_t *motion;                 /* enum disc_motion */
   double *x, *y, *angle;           /* centre (inside the box where it is periodic), rotation since the start */
   double *vx, *vy, *omega;
@@ -23,6 +25,12 @@ struct discs {
 
 bool discs_create(struct discs *discs, const struct scene *scene, struct status *status);
 void discs_destroy(struct discs *discs);
+
+/* Centroid and angle of disc i. */
+static inline struct pose discs_pose(const struct discs *discs, size_t i)
+{
+  return (struct pose){discs->x[i], discs->y[i], discs->angle[i]};
+}
 
 /* Saves or restores what changes: places, velocities and the forces of the last step. */
 bool discs_store(struct discs *discs, struct store *store, struct status *status);

@@ -45,7 +45,7 @@ bool occupation_create(struct occupation *o, const struct scene *scene, const st
                            .viscosity = scene->fluid.viscosity,
                            .reach = reach,
                            .minimum = 0.95,
-                           .area = area_find(scene->fluid.kernel),
+                           .kernel = solid_kernel_find(scene->fluid.kernel),
                            .search = scene->contact.search != SEARCH_GRID ? PAIRS_NONE
                                      : scene->contact.area == AREA_CELLS  ? PAIRS_WITH_AREA
                                                                           : PAIRS_ONCE,
@@ -92,14 +92,16 @@ static void settle(struct occupation *o, const struct discs *discs, size_t i)
   const double damping = weight_damping(o->form, o->viscosity, radius * discs->omega[i]);
   o->moved[i] = !(o->painted && o->x[i] == x && o->y[i] == y && o->damping[i] == damping);
   if (!o->moved[i]) return;
+  const struct pose pose = discs_pose(discs, i);
+  const struct shape_box box = discs->shape[i].kind->box(&discs->shape[i], &pose);
   o->was_row[i] = o->row[i];
   o->was_rows[i] = o->rows[i];
   o->x[i] = x;
   o->y[i] = y;
   o->damping[i] = damping;
-  o->column[i] = (int)floor(x - radius);
-  o->row[i] = (int)floor(y - radius);
-  o->rows[i] = (int)ceil(y + radius) - o->row[i];
+  o->column[i] = box.column;
+  o->row[i] = box.row;
+  o->rows[i] = box.rows;
   for (size_t k = 0; k < 2 * (size_t)o->rows[i]; k++) o->place[2 * o->first_row[i] + k] = no_run;
 }
 
@@ -257,11 +259,12 @@ bool stage_occupation(struct occupation *o, const struct discs *discs, struct te
 static void add_fractions(const struct occupation *o, const struct discs *discs, const struct run *run, double *eps,
                           double *scratch)
 {
-  const double radius = discs->radius[run->disc], x = o->x[run->disc], y = o->y[run->disc];
-  const int row = (int)lround(run->ry + y - 0.5), column = (int)lround(run->rx + x - 0.5);
-  struct area_extents e;
-  o->area->extents(radius, x, y, row, 1, &e);
-  o->area->rows(radius, x, y, row, 0, 1, &e, scratch);
+  const struct shape *shape = &discs->shape[run->disc];
+  const struct pose pose = discs_pose(discs, run->disc);
+  const int row = (int)lround(run->ry + pose.y - 0.5), column = (int)lround(run->rx + pose.x - 0.5);
+  struct row_extents e;
+  shape->kind->extents(shape, &pose, row, 1, &e);
+  shape->kind->fractions(shape, &pose, row, 0, 1, &e, scratch);
   const double *from = scratch + (column - o->column[run->disc] - e.first[0]);
   for (int k = 0; k < run->n; k++) eps[run->x + k] = fmin(1, eps[run->x + k] + from[k]);
 }

@@ -30,7 +30,7 @@
 
 enum { BAND_ROWS = 16 };
 
-struct area_kernel;
+struct solid_kernel;
 
 /* Two discs, lower index first, that are within reach of each other, and what (23) adds to their overlap area in a row.
  */
@@ -75,7 +75,7 @@ struct occupation {
   double minimum; /* A_m of (23) */
   enum pair_search search;
 
-  const struct area_kernel *area;
+  const struct solid_kernel *kernel;
 
   size_t discs;
   bool painted;                /* at least once */
@@ -146,7 +146,7 @@ static inline struct weight_law occupation_law(const struct occupation *o, doubl
 }
 
 /* The part of each cell of row y that discs cover, min(1, sum eps_p), for all columns. `scratch` has room for the cells of
- * a row of any disc and AREA_PAD more. */
+ * a row of any disc and SHAPE_PAD more. */
 void occupation_fractions(const struct occupation *occupation, const struct discs *discs, int y, double *eps,
                           double *scratch);
 

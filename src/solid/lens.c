@@ -1,4 +1,4 @@
-#include "contact/lens.h"
+#include "solid/lens.h"
 
 #include <math.h>
 

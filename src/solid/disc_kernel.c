@@ -1,5 +1,6 @@
 /* Areas by line tables, in plain loops that vectorise: whole vectors, so that none ends in a remainder. */
-#include "solid/area.h"
+#include "solid/disc.h"
+#include "solid/solid_kernel.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -110,8 +111,10 @@ static inline void cells(const double *restrict low, const double *restrict high
   }
 }
 
-static void KERNEL(extents)(double radius, double x, double y, int first_row, int rows, struct area_extents *e)
+static void KERNEL(extents)(const struct shape *disc, const struct pose *pose, int first_row, int rows,
+                            struct row_extents *e)
 {
+  const double radius = disc->radius, x = pose->x, y = pose->y;
   const double left = floor(x - radius) - x; /* from the centre to the line of the leftmost cell */
   const int n = whole_vectors(rows);
 #pragma omp simd
@@ -134,10 +137,10 @@ static void KERNEL(extents)(double radius, double x, double y, int first_row, in
  * edge past its last column: hence one line more. All corners come before all cells, since a vector that is read across
  * two just written would wait until they have reached the cache. */
 static void narrow_rows(double radius, double x, const struct lines *row_lines, int from, int end,
-                        const struct area_extents *e, double *eps)
+                        const struct row_extents *e, double *eps)
 {
   const int column = (int)floor(x - radius), columns = (int)ceil(x + radius) - column + 2;
-  _Alignas(64) double table[AREA_ROWS + 1][NARROW + 2 * VECTOR];
+  _Alignas(64) double table[SHAPE_ROWS + 1][NARROW + 2 * VECTOR];
   struct lines column_lines;
   lines_at(radius, x, column, columns, &column_lines);
   for (int r = from; r <= end; r++) {
@@ -165,7 +168,7 @@ static void rim_cells(double radius, const struct lines *row_lines, int r, const
 }
 
 /* True if a cell of some row's rim lies in the tile. */
-static bool rim_in_tile(const struct area_extents *e, int from, int end, int tile)
+static bool rim_in_tile(const struct row_extents *e, int from, int end, int tile)
 {
   for (int r = from; r < end; r++)
     if ((e->first[r] < tile + TILE && e->full[r] > tile) || (e->full_end[r] < tile + TILE && e->end[r] > tile))
@@ -175,10 +178,10 @@ static bool rim_in_tile(const struct area_extents *e, int from, int end, int til
 
 /* A disc with more lines than one table holds, tile by tile; those without a rim are passed over. */
 static void wide_rows(double radius, double x, const struct lines *row_lines, int from, int end,
-                      const struct area_extents *e, double *eps)
+                      const struct row_extents *e, double *eps)
 {
   const int column = (int)floor(x - radius), columns = (int)ceil(x + radius) - column + 1;
-  double *row[AREA_ROWS];
+  double *row[SHAPE_ROWS];
   for (int r = from; r < end; r++) {
     row[r] = eps;
     for (int k = e->full[r]; k < e->full_end[r]; k++) eps[k - e->first[r]] = 1;
@@ -196,9 +199,10 @@ static void wide_rows(double radius, double x, const struct lines *row_lines, in
   }
 }
 
-static void KERNEL(rows)(double radius, double x, double y, int first_row, int from, int end,
-                         const struct area_extents *e, double *eps)
+static void KERNEL(fractions)(const struct shape *disc, const struct pose *pose, int first_row, int from, int end,
+                              const struct row_extents *e, double *eps)
 {
+  const double radius = disc->radius, x = pose->x, y = pose->y;
   struct lines row_lines;
   lines_at(radius, y, first_row + from, end - from + 1, &row_lines);
   if ((int)ceil(x + radius) - (int)floor(x - radius) + 2 <= NARROW)
@@ -214,5 +218,13 @@ static void KERNEL(weights)(const double *restrict eps, int count, struct weight
   for (int k = 0; k < n; k++) weight[k] = weight_of(law, eps[k]);
 }
 
-extern const struct area_kernel KERNEL(area_kernel);
-const struct area_kernel KERNEL(area_kernel) = {KERNEL(extents), KERNEL(rows), KERNEL(weights)};
+extern const struct solid_kernel KERNEL(solid_kernel);
+const struct solid_kernel KERNEL(solid_kernel) = {.disc = {.name = "disc",
+                                                           .area = disc_area,
+                                                           .gyration2 = disc_gyration2,
+                                                           .box = disc_box,
+                                                           .extents = KERNEL(extents),
+                                                           .fractions = KERNEL(fractions),
+                                                           .overlap = disc_overlap,
+                                                           .overlap_half_plane = disc_overlap_half_plane},
+                                                  .weights = KERNEL(weights)};

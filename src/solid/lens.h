@@ -1,11 +1,8 @@
 /* Overlap areas in closed form, without cancellation at small overlap. */
-#ifndef DELBM_CONTACT_LENS_H
-#define DELBM_CONTACT_LENS_H
+#ifndef DELBM_SOLID_LENS_H
+#define DELBM_SOLID_LENS_H
 
-/* An overlap: its area and its chord, which is d(area)/d(overlap distance). */
-struct lens {
-  double area, chord;
-};
+#include "solid/shape.h"
 
 /* Two discs whose centres are `distance` apart. */
 struct lens lens_of_discs(double radius_a, double radius_b, double distance);

@@ -1,0 +1,13 @@
+/* The shape of a disc, apart from the cells that it covers (disc_kernel.c). Functions of struct shape_kind. */
+#ifndef DELBM_SOLID_DISC_H
+#define DELBM_SOLID_DISC_H
+
+#include "solid/shape.h"
+
+double disc_area(const struct shape *disc);
+double disc_gyration2(const struct shape *disc);
+struct shape_box disc_box(const struct shape *disc, const struct pose *pose);
+struct lens disc_overlap(const struct shape *disc, const struct shape *other, double dx, double dy);
+struct lens disc_overlap_half_plane(const struct shape *disc, double distance);
+
+#endif

@@ -1,0 +1,64 @@
+/* The shape of a body: what only the shape knows, behind one interface. The rest of the program knows a body by its pose and by
+ * the functions of struct shape_kind. Shapes are convex, so that a body covers one run of cells in each row.
+ *
+ * A new shape is one file that defines a struct shape_kind, the fields of struct shape for its measures, and a line in
+ * discs.c that chooses it. Lattice units; angles in radians, counter-clockwise. */
+#ifndef DELBM_SOLID_SHAPE_H
+#define DELBM_SOLID_SHAPE_H
+
+#include <stdint.h>
+
+/* Centroid and angle of a body. */
+struct pose {
+  double x, y, angle;
+};
+
+struct shape {
+  const struct shape_kind *kind;
+  double radius; /* of the smallest circle about the centroid that contains the shape */
+};
+
+/* The cells that a body touches: rows row .. row + rows - 1, and columns from `column` on. */
+struct shape_box {
+  int32_t column, row, rows;
+};
+
+enum {
+  SHAPE_PAD = 8,  /* elements past the last cell that shape_fractions may write */
+  SHAPE_ROWS = 24 /* rows in one call, at most */
+};
+
+/* The cells of each of some rows: first .. end - 1, counted from the box's column; cells full .. full_end - 1 are covered
+ * whole. */
+struct row_extents {
+  int32_t first[SHAPE_ROWS], end[SHAPE_ROWS], full[SHAPE_ROWS], full_end[SHAPE_ROWS];
+};
+
+/* Extents of rows first_row .. first_row + rows - 1 of the lattice, each of which the body touches. */
+typedef void shape_extents(const struct shape *shape, const struct pose *pose, int first_row, int rows,
+                           struct row_extents *extents);
+
+/* Occupation fractions of the cells of rows from_row .. end_row - 1 of those extents, one row after another. */
+typedef void shape_fractions(const struct shape *shape, const struct pose *pose, int first_row, int from_row,
+                             int end_row, const struct row_extents *extents, double *eps);
+
+/* Overlap of two bodies, or of a body and the half plane beyond a side: its area, and its chord, which is the derivative of
+ * the area by the distance. */
+struct lens {
+  double area, chord;
+};
+
+struct shape_kind {
+  const char *name;
+  double (*area)(const struct shape *shape);
+  double (*gyration2)(const struct shape *shape); /* mean of r^2 over the area, about the centroid */
+  struct shape_box (*box)(const struct shape *shape, const struct pose *pose);
+  shape_extents *extents;
+  shape_fractions *fractions;
+  /* With another body of the same kind whose centroid is (dx, dy) away. */
+  struct lens (*overlap)(const struct shape *shape, const struct shape *other, double dx, double dy);
+  /* With a half plane whose edge is `distance` from the centroid; negative where the centroid lies in it. */
+  struct lens (*overlap_half_plane)(const struct shape *shape, double distance);
+};
+
+#endif
