@@ -220,6 +220,7 @@ static void KERNEL(weights)(const double *restrict eps, int count, struct weight
 
 extern const struct solid_kernel KERNEL(solid_kernel);
 const struct solid_kernel KERNEL(solid_kernel) = {.disc = {.name = "disc",
+                                                           .round = true,
                                                            .area = disc_area,
                                                            .gyration2 = disc_gyration2,
                                                            .box = disc_box,

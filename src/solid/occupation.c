@@ -20,6 +20,7 @@ static bool allocate(struct occupation *o, size_t rows, struct status *status)
   const size_t n = o->discs, bands = (size_t)o->band_count;
   return (o->x = memory_allocate(n, sizeof *o->x, what, status)) &&
          (o->y = memory_allocate(n, sizeof *o->y, what, status)) &&
+         (o->angle = memory_allocate(n, sizeof *o->angle, what, status)) &&
          (o->damping = memory_allocate(n, sizeof *o->damping, what, status)) &&
          (o->column = memory_allocate(n, sizeof *o->column, what, status)) &&
          (o->row = memory_allocate(n, sizeof *o->row, what, status)) &&
@@ -78,26 +79,28 @@ void occupation_destroy(struct occupation *o)
     free(o->drafts[t].candidates);
     free(o->drafts[t].eps);
   }
-  void *const arrays[] = {o->x,          o->y,          o->damping,  o->column,    o->row,     o->rows,
-                          o->moved,      o->was_row,    o->was_rows, o->first_row, o->place,   o->order,
-                          o->band_start, o->band_discs, o->stale,    o->bands,     o->batches, o->drafts};
+  void *const arrays[] = {o->x,          o->y,       o->angle,    o->damping,   o->column, o->row,   o->rows,
+                          o->moved,      o->was_row, o->was_rows, o->first_row, o->place,  o->order, o->band_start,
+                          o->band_discs, o->stale,   o->bands,    o->batches,   o->drafts};
   for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; k++) free(arrays[k]);
   *o = (struct occupation){0};
 }
 
 /* Notes where disc i is now, and how it spins. Rows that lie in no band keep no_run. */
-static void settle(struct occupation *o, const struct discs *discs, size_t i)
+static void locate(struct occupation *o, const struct discs *discs, size_t i)
 {
-  const double radius = discs->radius[i], x = discs->x[i], y = discs->y[i];
-  const double damping = weight_damping(o->form, o->viscosity, radius * discs->omega[i]);
-  o->moved[i] = !(o->painted && o->x[i] == x && o->y[i] == y && o->damping[i] == damping);
-  if (!o->moved[i]) return;
+  const struct shape_kind *kind = discs->shape[i].kind;
   const struct pose pose = discs_pose(discs, i);
-  const struct shape_box box = discs->shape[i].kind->box(&discs->shape[i], &pose);
+  const double damping = weight_damping(o->form, o->viscosity, discs->radius[i] * discs->omega[i]);
+  const bool same_cells = o->x[i] == pose.x && o->y[i] == pose.y && (kind->round || o->angle[i] == pose.angle);
+  o->moved[i] = !(o->painted && same_cells && o->damping[i] == damping);
+  if (!o->moved[i]) return;
+  const struct shape_box box = kind->box(&discs->shape[i], &pose);
   o->was_row[i] = o->row[i];
   o->was_rows[i] = o->rows[i];
-  o->x[i] = x;
-  o->y[i] = y;
+  o->x[i] = pose.x;
+  o->y[i] = pose.y;
+  o->angle[i] = pose.angle;
   o->damping[i] = damping;
   o->column[i] = box.column;
   o->row[i] = box.row;
@@ -234,7 +237,7 @@ bool stage_occupation(struct occupation *o, const struct discs *discs, struct te
 {
   struct status status;
 #pragma omp for schedule(static)
-  for (size_t i = 0; i < o->discs; i++) settle(o, discs, i);
+  for (size_t i = 0; i < o->discs; i++) locate(o, discs, i);
 #pragma omp single
   {
     if (!prepare_bands(o, &status)) team_fail(team, &status);

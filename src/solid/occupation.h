@@ -79,7 +79,7 @@ struct occupation {
 
   size_t discs;
   bool painted;                /* at least once */
-  double *x, *y;               /* centre of each disc when it was painted */
+  double *x, *y, *angle;       /* pose of each disc when it was painted; angle only of shapes that are not round */
   double *damping;             /* and the damping in its cells (weight.h) */
   int32_t *column;             /* of its leftmost cell, before wrapping */
   int32_t *row, *rows;         /* its lowest cell, and how many rows it covers */

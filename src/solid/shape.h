@@ -6,6 +6,7 @@
 #ifndef DELBM_SOLID_SHAPE_H
 #define DELBM_SOLID_SHAPE_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 /* Centroid and angle of a body. */
@@ -50,6 +51,7 @@ struct lens {
 
 struct shape_kind {
   const char *name;
+  bool round; /* unchanged by rotation: cells need not be computed again when only the angle changes */
   double (*area)(const struct shape *shape);
   double (*gyration2)(const struct shape *shape); /* mean of r^2 over the area, about the centroid */
   struct shape_box (*box)(const struct shape *shape, const struct pose *pose);
