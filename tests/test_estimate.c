@@ -1,4 +1,5 @@
 /* What is foreseen of a scene, against runs of it; and the cause that is found where a run diverges. */
+#include "maps.h"
 #include "scenes.h"
 
 #include "sim/estimate.h"
@@ -11,6 +12,7 @@
 
 TestSuite(estimate);
 TestSuite(divergence);
+TestSuite(maps);
 
 static struct simulation *start(struct scene *scene)
 {
@@ -237,4 +239,74 @@ Test(divergence, leaves_the_largest_mach_number_that_the_fluid_had_in_the_report
   cr_assert(at && sscanf(at, "at Mach %lf", &told) == 1, "%s", status.message);
   cr_expect_gt(report.max_mach, 0.6);
   cr_expect_float_eq(report.max_mach, told, 0.005 * told);
+}
+
+static const char *const viscosity_rows[] = {"0.0001", "0.0003", "0.001", "0.002", "0.005", "0.01", "0.03", "0.1"};
+static const char *const operators[] = {"bgk", "trt 3/16", "mrt 1.4 1.2", "mrt s_nu 1.2", "adaptive"};
+static const double viscosities[] = {1e-4, 3e-4, 1e-3, 2e-3, 5e-3, 1e-2, 3e-2, 1e-1};
+
+/* Up to Mach 0.2, the third column. */
+Test(maps, of_the_shear_layer_complete_up_to_mach_0_2_from_the_least_relaxation_time_on)
+{
+  char *report = maps_read();
+  for (size_t v = 0; v < 8; v++) {
+    int failed = 0;
+    for (size_t k = 0; k < 5; k++) {
+      char map[64];
+      snprintf(map, sizeof map, "shear layer, %s", operators[k]);
+      for (int mach = 0; mach < 3; mach++) failed += maps_verdict(report, map, viscosity_rows[v], mach) != 'c';
+    }
+    const bool warned = 0.5 + 3 * viscosities[v] < estimate_least_tau - 1e-9;
+    cr_expect_eq(failed > 0, warned, "viscosity %g", viscosities[v]);
+  }
+  free(report);
+}
+
+Test(maps, of_the_shear_layer_diverge_with_the_magic_rate_beside_s_e_of_1_4_wherever_any_does)
+{
+  char *report = maps_read();
+  for (size_t v = 0; v < 8; v++)
+    for (int mach = 0; mach < 5; mach++)
+      for (size_t k = 0; k < 5; k++) {
+        char map[64];
+        snprintf(map, sizeof map, "shear layer, %s", operators[k]);
+        cr_expect(maps_verdict(report, "shear layer, mrt 1.4 magic 3/16", viscosity_rows[v], mach) == 'd' ||
+                      maps_verdict(report, map, viscosity_rows[v], mach) != 'd',
+                  "%s at %g, column %d", operators[k], viscosities[v], mach);
+      }
+  free(report);
+}
+
+Test(maps, of_density_diverge_where_the_explicit_solve_is_foreseen_to)
+{
+  static const double densities[] = {0.01, 0.03, 0.1, 0.3, 0.5, 0.8, 0.99, 1.01, 1.2, 2, 5, 10, 100, 1000};
+  static const char *const forms[] = {"unified", "owen", "midpoint"};
+  char *report = maps_read();
+  for (int k = 0; k < 6; k++)
+    for (int c = 0; c < 14; c++) {
+      char row[32];
+      struct scene scene = scene_box(48, 72, 0.1, SIDES_PERIODIC);
+      scene.coupling.solve = k < 3 ? SOLVE_IMPLICIT : SOLVE_EXPLICIT_AVERAGED;
+      scene_add_disc(&scene, 5, densities[c], 24, 36);
+      snprintf(row, sizeof row, "%s %s", forms[k % 3], k < 3 ? "implicit" : "averaged");
+      cr_expect_eq(maps_verdict(report, "density of a settling disc", row, c) == 'd',
+                   estimate_lightest_explicit(&scene) == 0, "%s, density %g", row, densities[c]);
+      scene_clear(&scene);
+    }
+  free(report);
+}
+
+/* At the stiffness that the paper's crowd has. */
+Test(maps, of_a_packing_fail_where_its_weight_is_foreseen_to_be_too_much)
+{
+  static const double weights[] = {1, 3, 10, 30, 100};
+  char *report = maps_read();
+  for (int c = 0; c < 5; c++) {
+    struct scene scene = scene_crowd(80, 80, 5, 11, 0.2);
+    for (size_t i = 0; i < scene.particles.count; i++) scene.particles.discs[i].density = 1 + 0.01 * weights[c];
+    cr_expect_eq(maps_verdict(report, "packing pressed by its weight", "0.25", c) != 'c',
+                 estimate_load(&scene, 1) > estimate_most_load, "weight %g", weights[c]);
+    scene_clear(&scene);
+  }
+  free(report);
 }

@@ -1,6 +1,9 @@
 /* The program from outside: its contracts on command line, exit codes and files. DELBM is the path of the built
  * program. */
+#include "maps.h"
 #include "shell.h"
+
+#include <math.h>
 
 TestSuite(program, .init = shell_enter, .fini = shell_leave, .timeout = 60 * SLOWNESS);
 
@@ -455,6 +458,38 @@ Test(program, info_warns_of_what_the_maps_found_to_fail)
     cr_expect_eq(shell("$DELBM info crowd.yaml %s >out 2>&1 && grep -q \"%s\" out || { cat out >&2; exit 1; }",
                        cases[k].settings, cases[k].note),
                  0, "%s: no note", cases[k].settings);
+}
+
+/* A place of a map by form, of which info warns exactly where the recorded run did not complete. */
+static void expect_warning_as_in_map(const char *report, const char *map, const char *form, int column,
+                                     const char *settings)
+{
+  const bool failed = maps_verdict(report, map, form, column) != 'c';
+  cr_expect_eq(shell("$DELBM info held.yaml --set coupling.form=%s %s >out && grep -q 'form: midpoint does not' out",
+                     form, settings),
+               failed ? 0 : 1, "%s, %s, column %d", map, form, column);
+}
+
+Test(program, info_warns_of_the_places_of_maps_of_held_discs_where_runs_failed_and_of_no_other)
+{
+  static const char *const forms[] = {"unified", "owen", "midpoint"};
+  static const double spins[] = {0.001, 0.002, 0.004, 0.008, 0.015, 0.03}, machs[] = {0.02, 0.05, 0.1, 0.15, 0.2, 0.3};
+  char *report = maps_read(), settings[256];
+  shell_write("held.yaml",
+              "domain: {size: [90, 60]}\nfluid: {viscosity: 0.01}\n"
+              "particles: {discs: [{radius: 5, position: [40.3, 55.5], fixed: true}]}\nrun: {steps: 20000}\n");
+  for (int form = 0; form < 3; form++)
+    for (int c = 0; c < 6; c++) {
+      snprintf(settings, sizeof settings, "--set domain.top.velocity=[%g,0]", machs[c] / sqrt(3));
+      expect_warning_as_in_map(report, "fixed disc under a lid", forms[form], c, settings);
+      snprintf(settings, sizeof settings,
+               "--set domain.size=[60,60] --set 'particles.discs=[{radius: 10, position: [30, 30], fixed: true, spin: "
+               "%g}]' --set domain.left=periodic --set domain.right=periodic --set domain.top=periodic --set "
+               "domain.bottom=periodic",
+               spins[c]);
+      expect_warning_as_in_map(report, "fixed disc that spins", forms[form], c, settings);
+    }
+  free(report);
 }
 
 Test(program, info_warns_once_of_small_viscosity)
