@@ -319,8 +319,11 @@ Test(resume, after_signals_goes_on_and_their_exit_codes_differ)
   cr_expect_eq(shell("grep -q 'interrupted at step .*delbm resume cut' err && grep -q status=interrupted out && "
                      "grep -q '\"status\": \"interrupted\"' cut/run.json"),
                0);
+  cr_expect_eq(shell("grep -q 'interrupted by SIGINT' cut/run.json"), 0);
   cr_expect_eq(stop("TERM", "resume cut"), 143);
+  cr_expect_eq(shell("grep -q 'interrupted by SIGTERM' cut/run.json"), 0);
   cr_expect_eq(stop("HUP", "resume cut"), 129);
+  cr_expect_eq(shell("grep -q 'interrupted by SIGHUP' cut/run.json"), 0);
   cr_expect_eq(shell("$DELBM resume cut >out 2>err && grep -q 'resuming cut at step' err && grep -q steps=1501 out"),
                0);
   cr_expect_eq(shell("%s", compare), 0);

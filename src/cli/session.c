@@ -118,7 +118,9 @@ static const char *reason_of(const struct session_state *run)
 {
   if (run->outcome == OUTCOME_DONE) return "all of run.steps are done";
   if (run->outcome != OUTCOME_INTERRUPTED) return run->status.message;
-  return run->status.code == DELBM_TERMINATED ? "interrupted by SIGTERM" : "interrupted by SIGINT";
+  return run->status.code == DELBM_HUNG_UP      ? "interrupted by SIGHUP"
+         : run->status.code == DELBM_TERMINATED ? "interrupted by SIGTERM"
+                                                : "interrupted by SIGINT";
 }
 
 enum { WARNING = 256 };
