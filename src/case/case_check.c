@@ -27,20 +27,16 @@ static void check_cells(struct draft *draft)
                  cells * cell_bytes / gib);
 }
 
-/* Paths of the keys of a side, and which way is into the box. */
+/* Paths of the keys of a side. */
 struct side_keys {
-  const char *name;
-  const char *type;
-  const char *velocity;
-  int axis;
-  int inward;
+  const char *type, *velocity;
 };
 
 static const struct side_keys side_keys[SIDE_COUNT] = {
-    [SIDE_LEFT] = {"left", "domain.left.type", "domain.left.velocity", 0, 1},
-    [SIDE_RIGHT] = {"right", "domain.right.type", "domain.right.velocity", 0, -1},
-    [SIDE_BOTTOM] = {"bottom", "domain.bottom.type", "domain.bottom.velocity", 1, 1},
-    [SIDE_TOP] = {"top", "domain.top.type", "domain.top.velocity", 1, -1},
+    [SIDE_LEFT] = {"domain.left.type", "domain.left.velocity"},
+    [SIDE_RIGHT] = {"domain.right.type", "domain.right.velocity"},
+    [SIDE_BOTTOM] = {"domain.bottom.type", "domain.bottom.velocity"},
+    [SIDE_TOP] = {"domain.top.type", "domain.top.velocity"},
 };
 
 static enum side_name opposite(enum side_name side)
@@ -69,15 +65,15 @@ static void check_side_velocity(struct draft *draft, enum side_name s)
 {
   const struct side_keys *keys = &side_keys[s];
   const struct side *side = &draft->scene.domain.side[s];
-  const char axis = keys->axis == 0 ? 'x' : 'y';
+  const char axis = "xy"[side_axis(s)];
   if (!draft_knows(draft, keys->type) || !draft_knows(draft, keys->velocity)) return;
   bool given = draft_gives(draft, keys->velocity);
-  double normal = side->velocity[keys->axis];
+  const double normal = side->velocity[side_axis(s)];
   if (side->type == SIDE_WALL && normal != 0)
     draft_refuse(draft, keys->velocity, "a velocity along the wall, with no component in %c", axis);
-  if (side->type == SIDE_INLET && !(normal * keys->inward > 0))
+  if (side->type == SIDE_INLET && !(side_is_high(s) ? normal < 0 : normal > 0))
     draft_refuse(draft, keys->velocity, "a velocity into the box, with a component %s 0 in %c",
-                 keys->inward > 0 ? ">" : "<", axis);
+                 side_is_high(s) ? "<" : ">", axis);
   if (given && side->type == SIDE_PERIODIC) draft_refuse(draft, keys->velocity, "no velocity on a periodic side");
   if (given && side->type == SIDE_OUTLET) draft_refuse(draft, keys->velocity, "no velocity on an outlet");
 }
@@ -91,7 +87,7 @@ static void check_sides(struct draft *draft)
     enum side_name other = opposite(s);
     if (!known) continue;
     if (sides[s].type == SIDE_PERIODIC && sides[other].type != SIDE_PERIODIC)
-      draft_refuse(draft, side_keys[s].type, "the %s side to be periodic too, or neither", side_keys[other].name);
+      draft_refuse(draft, side_keys[s].type, "the %s side to be periodic too, or neither", side_name_text(other));
     if (sides[s].type == SIDE_INLET && !has_side(draft, SIDE_OUTLET))
       draft_refuse(draft, side_keys[s].type, "an outlet on another side, for what flows in");
   }
@@ -289,12 +285,10 @@ static void check_impact(struct draft *draft, size_t i)
   const struct scene *scene = &draft->scene;
   const struct disc_spec *disc = &scene->particles.discs[i];
   for (enum side_name side = 0; side < SIDE_COUNT && disc->motion == DISC_FREE; side++) {
-    const int axis = side == SIDE_BOTTOM || side == SIDE_TOP;
-    const bool high = side == SIDE_RIGHT || side == SIDE_TOP;
-    const double at = disc->position[axis], distance = high ? scene->domain.size[axis] - at : at;
-    const double speed = high ? disc->velocity[axis] : -disc->velocity[axis];
+    const double towards = disc->velocity[side_axis(side)], speed = side_is_high(side) ? towards : -towards;
+    const double gap = scene_distance_to_side(scene, side, disc->position) - disc->radius;
     if (scene->domain.side[side].type == SIDE_PERIODIC || speed <= 0) continue;
-    const double depth = depth_of_impact(draft, disc, fmax(0, distance - disc->radius), speed);
+    const double depth = depth_of_impact(draft, disc, fmax(0, gap), speed);
     char path[DISC_PATH];
     if (depth > most_depth_in_side)
       draft_refuse(
@@ -347,12 +341,12 @@ static void check_density(struct draft *draft)
   }
 }
 
-static bool check_region(struct draft *draft, const double region[4])
+static bool check_region(struct draft *draft, const char *path, const double region[4])
 {
   const int *size = draft->scene.domain.size;
   bool inside = region[2] <= size[0] && region[3] <= size[1];
   if (region[0] < region[2] && region[1] < region[3] && inside) return true;
-  draft_refuse(draft, "particles.fill.region", "0 <= x0 < x1 <= %d and 0 <= y0 < y1 <= %d", size[0], size[1]);
+  draft_refuse(draft, path, "0 <= x0 < x1 <= %d and 0 <= y0 < y1 <= %d", size[0], size[1]);
   return false;
 }
 
@@ -396,18 +390,15 @@ static void check_fill(struct draft *draft)
   double box[4];
   end_with_box(draft, fill->region);
   draft_fill_region(draft, box);
-  if (check_region(draft, box) && spacing) check_count(draft, box);
+  if (check_region(draft, "particles.fill.region", box) && spacing) check_count(draft, box);
 }
 
 /* The part of the box that fields show: at least one cell. */
 static void check_shown(struct draft *draft)
 {
-  const double *region = draft->scene.output.fields.region;
-  const int *size = draft->scene.domain.size;
   static const char path[] = "output.fields.region";
-  if (!draft_gives(draft, path) || !draft_knows(draft, path) || !draft_knows(draft, "domain.size")) return;
-  if (!(region[0] < region[2] && region[1] < region[3] && region[2] <= size[0] && region[3] <= size[1]))
-    draft_refuse(draft, path, "0 <= x0 < x1 <= %d and 0 <= y0 < y1 <= %d", size[0], size[1]);
+  if (draft_gives(draft, path) && draft_knows(draft, path) && draft_knows(draft, "domain.size"))
+    check_region(draft, path, draft->scene.output.fields.region);
 }
 
 bool case_check(struct draft *draft, struct status *status)

@@ -1,6 +1,7 @@
 #include "case/case_overlaps.h"
 
 #include "base/memory.h"
+#include "solid/discs.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -16,12 +17,8 @@ static bool add(struct case_overlaps *found, size_t a, size_t b, double depth, s
 static bool add_sides(const struct scene *scene, size_t i, struct case_overlaps *found, struct status *status)
 {
   const struct disc_spec *disc = &scene->particles.discs[i];
-  const double x = disc->position[0], y = disc->position[1], *at = disc->position;
-  const int *size = scene->domain.size;
-  const double distance[SIDE_COUNT] = {
-      [SIDE_LEFT] = x, [SIDE_RIGHT] = size[0] - x, [SIDE_BOTTOM] = y, [SIDE_TOP] = size[1] - at[1]};
   for (enum side_name side = 0; side < SIDE_COUNT && disc->motion == DISC_FREE; side++) {
-    const double depth = disc->radius - distance[side];
+    const double depth = disc->radius - scene_distance_to_side(scene, side, disc->position);
     if (scene->domain.side[side].type == SIDE_PERIODIC || depth <= 0) continue;
     if (!add(found, i, overlap_sides + side, depth, status)) return false;
   }
@@ -30,8 +27,7 @@ static bool add_sides(const struct scene *scene, size_t i, struct case_overlaps 
 
 static double along(const struct scene *scene, int axis, double d)
 {
-  const double size = scene->domain.size[axis];
-  return scene_is_periodic(scene, axis) ? d - size * rint(d / size) : d;
+  return nearest_image(d, scene->domain.size[axis], scene_is_periodic(scene, axis));
 }
 
 static bool add_pair(const struct scene *scene, size_t i, size_t j, struct case_overlaps *found, struct status *status)

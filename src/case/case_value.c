@@ -264,7 +264,8 @@ bool value_read(const struct key *key, const struct tree_node *node, const struc
   return true;
 }
 
-void value_format_number(double number, char text[32])
+/* The shortest of 15 to 17 digits that reads back equal. */
+static void format_number(double number, char text[32])
 {
   for (int digits = 15; digits <= 17; digits++) {
     snprintf(text, 32, "%.*g", digits, number);
@@ -285,7 +286,7 @@ static void format_component(const struct key *key, const unsigned char *field, 
   } else {
     double number;
     memcpy(&number, field + i * sizeof number, sizeof number);
-    value_format_number(number, text);
+    format_number(number, text);
   }
 }
 

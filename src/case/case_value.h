@@ -35,7 +35,4 @@ double value_rounding(const struct key *key, const struct tree_node *node, const
 void value_expect(const struct key *key, const struct tree_node *node, const struct units *units,
                   char text[VALUE_TEXT]);
 
-/* The shortest of 15 to 17 digits that reads back equal. */
-void value_format_number(double number, char text[32]);
-
 #endif

@@ -58,11 +58,10 @@ static void advise_form(const struct scene *scene)
 /* True if a side that moves passes over a part of the disc. */
 static bool is_under_moving_side(const struct scene *scene, const struct disc_spec *disc)
 {
-  const int *size = scene->domain.size;
-  const double *at = disc->position, distance[] = {at[0], size[0] - at[0], at[1], size[1] - at[1]};
-  for (int k = 0; k < SIDE_COUNT; k++) {
-    const struct side *side = &scene->domain.side[k];
-    if (side->type == SIDE_WALL && hypot(side->velocity[0], side->velocity[1]) > 0 && distance[k] < disc->radius)
+  for (enum side_name name = 0; name < SIDE_COUNT; name++) {
+    const struct side *side = &scene->domain.side[name];
+    if (side->type == SIDE_WALL && hypot(side->velocity[0], side->velocity[1]) > 0 &&
+        scene_distance_to_side(scene, name, disc->position) < disc->radius)
       return true;
   }
   return false;

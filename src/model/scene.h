@@ -171,6 +171,24 @@ static inline const char *side_name_text(enum side_name side)
   return names[side];
 }
 
+/* The axis that a side bounds, and whether at its upper end. */
+static inline int side_axis(enum side_name side)
+{
+  return side == SIDE_BOTTOM || side == SIDE_TOP;
+}
+
+static inline bool side_is_high(enum side_name side)
+{
+  return side == SIDE_RIGHT || side == SIDE_TOP;
+}
+
+/* From a place in the box to the side. */
+static inline double scene_distance_to_side(const struct scene *scene, enum side_name side, const double place[2])
+{
+  const int axis = side_axis(side);
+  return side_is_high(side) ? scene->domain.size[axis] - place[axis] : place[axis];
+}
+
 static inline bool scene_is_periodic(const struct scene *scene, int axis)
 {
   return scene->domain.side[axis == 0 ? SIDE_LEFT : SIDE_BOTTOM].type == SIDE_PERIODIC;

@@ -44,10 +44,20 @@ struct image {
   uint8_t *pixels; /* row by row from the top */
 };
 
-struct picture_scale picture_scale(const int size[2])
+/* Pixels on a domain of `size` cells: one a cell, unless the longer side would then have more than PICTURE_LARGEST
+ * pixels, where pixels average squares of `block` cells, or fewer than PICTURE_SMALLEST, where a cell has `zoom` pixels
+ * a side. */
+enum { PICTURE_LARGEST = 1600, PICTURE_SMALLEST = 400 };
+struct scale {
+  int block;
+  int zoom;
+  int width, height; /* pixels */
+};
+
+static struct scale scale_of(const int size[2])
 {
   int longer = size[0] > size[1] ? size[0] : size[1];
-  struct picture_scale scale = {.block = 1, .zoom = 1};
+  struct scale scale = {.block = 1, .zoom = 1};
   if (longer > PICTURE_LARGEST) scale.block = (longer + PICTURE_LARGEST - 1) / PICTURE_LARGEST;
   if (longer < PICTURE_SMALLEST) scale.zoom = 2 * PICTURE_SMALLEST / longer;
   scale.width = (size[0] + scale.block - 1) / scale.block * scale.zoom;
@@ -307,7 +317,7 @@ static bool image_save(const struct image *image, const char *path, struct statu
 
 bool picture_write(const struct picture *picture, const char *path, struct status *status)
 {
-  struct picture_scale scale = picture_scale(picture->size);
+  struct scale scale = scale_of(picture->size);
   struct raster raster = {.width = scale.width / scale.zoom, .height = scale.height / scale.zoom};
   struct image image = {.width = scale.width, .height = scale.height};
   size_t points = (size_t)raster.width * (size_t)raster.height, pixels = (size_t)image.width * (size_t)image.height;

@@ -18,17 +18,6 @@ struct picture {
   double values_end;    /* end of their scale, which starts at 0; 0: the end of the quantity's */
 };
 
-/* Pixels on a domain of `size` cells: one a cell, unless the longer side would then have more than PICTURE_LARGEST
- * pixels, where pixels average squares of `block` cells, or fewer than PICTURE_SMALLEST, where a cell has `zoom` pixels
- * a side. */
-enum { PICTURE_LARGEST = 1600, PICTURE_SMALLEST = 400 };
-struct picture_scale {
-  int block;
-  int zoom;
-  int width, height; /* pixels */
-};
-struct picture_scale picture_scale(const int size[2]);
-
 /* Draws and writes one picture. A build without libpng refuses. */
 #ifdef DELBM_PNG
 enum { PICTURE_SUPPORTED = 1 };

@@ -14,14 +14,12 @@ static const double large_excess = 0.1;
 /* Part of a side before which discs lie, no farther from it than a diameter. */
 static double part_closed(const struct divergence *of, enum side_name side)
 {
-  const int axis = side == SIDE_LEFT || side == SIDE_RIGHT ? 0 : 1, *size = of->scene->domain.size;
-  const double at = side == SIDE_RIGHT || side == SIDE_TOP ? size[axis] : 0;
   double closed = 0;
   for (size_t i = 0; i < of->discs->count; i++) {
-    const double radius = of->discs->radius[i], centre = axis == 0 ? of->discs->x[i] : of->discs->y[i];
-    if (fabs(centre - at) <= 3 * radius) closed += 2 * radius;
+    const double radius = of->discs->radius[i], centre[2] = {of->discs->x[i], of->discs->y[i]};
+    if (scene_distance_to_side(of->scene, side, centre) <= 3 * radius) closed += 2 * radius;
   }
-  return fmin(1, closed / size[!axis]);
+  return fmin(1, closed / of->scene->domain.size[!side_axis(side)]);
 }
 
 /* The outlet that is closed most. */
@@ -141,12 +139,10 @@ static double gap(const struct divergence *of, size_t disc)
 /* The side nearest to the cell, if within `reach`; SIDE_COUNT: none. */
 static enum side_name side_near(const struct divergence *of, double reach)
 {
-  for (enum side_name side = 0; side < SIDE_COUNT; side++) {
-    const int axis = side == SIDE_LEFT || side == SIDE_RIGHT ? 0 : 1;
-    const bool high = side == SIDE_RIGHT || side == SIDE_TOP;
-    const double at = of->cell[axis] + 0.5, distance = high ? of->scene->domain.size[axis] - at : at;
-    if (of->scene->domain.side[side].type == SIDE_WALL && distance <= reach) return side;
-  }
+  const double cell[2] = {of->cell[0] + 0.5, of->cell[1] + 0.5};
+  for (enum side_name side = 0; side < SIDE_COUNT; side++)
+    if (of->scene->domain.side[side].type == SIDE_WALL && scene_distance_to_side(of->scene, side, cell) <= reach)
+      return side;
   return SIDE_COUNT;
 }
 
