@@ -3,6 +3,7 @@
 
 #include "bench.h"
 #include "fluid/sweep.h"
+#include "output/json.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -33,17 +34,6 @@ static const struct bench *find(const char *name)
   return NULL;
 }
 
-/* A message as a JSON string. */
-static void write_text(const char *text, FILE *json)
-{
-  fputc('"', json);
-  for (const char *c = text; *c; c++) {
-    if (*c == '"' || *c == '\\') fputc('\\', json);
-    fputc((unsigned char)*c < 0x20 ? ' ' : *c, json);
-  }
-  fputc('"', json);
-}
-
 static bool copy_members(FILE *members, FILE *json, struct status *status)
 {
   char part[4096];
@@ -71,7 +61,7 @@ static bool run_one(const struct bench *bench, bool quick, FILE *json, bool firs
   const bool ok = run_kept(bench, quick, json, status);
   if (!ok) {
     fputs("\"failed\": ", json);
-    write_text(status->message, json);
+    json_text(status->message, json);
   }
   fputc('}', json);
   return ok;

@@ -1,0 +1,9 @@
+#ifndef DELBM_OUTPUT_JSON_H
+#define DELBM_OUTPUT_JSON_H
+
+#include <stdio.h>
+
+/* Writes a JSON string. A byte that is not UTF-8 (a path may hold any) becomes the replacement character. */
+void json_text(const char *text, FILE *stream);
+
+#endif
