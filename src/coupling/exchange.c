@@ -56,7 +56,7 @@ bool exchange_create(struct exchange *e, const struct scene *scene, const struct
       (e->surface = memory_allocate(discs->count, sizeof *e->surface, what, status)) &&
       (!any_light(e, discs) || (e->memory = memory_allocate(3 * discs->count, sizeof *e->memory, what, status))) &&
       (e->solve != SOLVE_IMPLICIT ||
-       (e->carried = memory_allocate(2 * discs->count, sizeof *e->carried, what, status))) &&
+       (e->carried = memory_allocate(3 * discs->count, sizeof *e->carried, what, status))) &&
       (e->solve == SOLVE_IMPLICIT || (e->last = memory_allocate(3 * discs->count, sizeof *e->last, what, status))))
     return true;
   exchange_destroy(e);
@@ -81,7 +81,7 @@ bool exchange_store(struct exchange *e, size_t discs, struct store *store, struc
   const bool stored = store_mark(store, "exchange", status) && store_bytes(store, &has_last, sizeof has_last, status) &&
                       (!e->last || store_bytes(store, e->last, bytes, status)) &&
                       (!e->memory || store_bytes(store, e->memory, bytes, status)) &&
-                      (!e->carried || store_bytes(store, e->carried, bytes / 3 * 2, status));
+                      (!e->carried || store_bytes(store, e->carried, bytes, status));
   e->has_last = has_last;
   return stored;
 }
@@ -142,9 +142,8 @@ static bool invert(const struct gathered *g, double mass, double inertia, double
 
 /* K, and dV without contacts; r is R, and then R + C. */
 static bool respond(struct response *response, const struct gathered *g, double mass, double inertia, double r[3],
-                    const double carried[2])
+                    const double c[3])
 {
-  const double c[3] = {carried[0], carried[1], 0};
   double free[3], back[3];
   for (int k = 0; k < 3; k++) r[k] += c[k];
   if (!invert(g, mass, inertia, 1, response)) return false;
@@ -169,16 +168,18 @@ static bool solve_implicit(struct exchange *e, const struct discs *d, size_t i, 
     for (int k = 0; k < 3; k++) r[k] += p[k] / held.time;
   }
   return respond(&e->response[i], &e->gathered[i], d->mass[i] - d->fluid_mass[i] + held.mass,
-                 d->inertia[i] - d->fluid_inertia[i] + held.inertia, r, &e->carried[2 * i]);
+                 d->inertia[i] - d->fluid_inertia[i] + held.inertia, r, &e->carried[3 * i]);
 }
 
-void exchange_hide(struct exchange *e, size_t i, double jx, double jy, double hidden[3])
+void exchange_hide(struct exchange *e, size_t i, const struct wrench *impulse, double hidden[3])
 {
-  double *carried = &e->carried[2 * i];
-  const double impact[3] = {jx - carried[0], jy - carried[1], 0};
+  double *carried = &e->carried[3 * i];
+  const double impact[3] = {impulse->fx - carried[0], impulse->fy - carried[1], impulse->torque - carried[2]};
   response_to(&e->response[i], impact, hidden);
-  for (int k = 0; k < 3; k++) hidden[k] *= 1 - e->response[i].share;
-  for (int axis = 0; axis < 2; axis++) carried[axis] += impact[axis] / carried_time;
+  for (int k = 0; k < 3; k++) {
+    hidden[k] *= 1 - e->response[i].share;
+    carried[k] += impact[k] / carried_time;
+  }
 }
 
 static void solve_explicit(struct exchange *e, const struct discs *d, size_t i, double weight[2])

@@ -70,7 +70,7 @@ struct exchange {
   struct response *response;
   struct surface_velocity *surface;
   double *last;    /* explicit-averaged: [3 disc + component] exchange of the step before */
-  double *carried; /* implicit: [2 disc + axis] C */
+  double *carried; /* implicit: [3 disc + component] C */
   double *memory;  /* implicit, with light discs: [3 disc + component] p of each disc; else NULL */
   bool has_last;
   bool leave_unsolved, leave_unmoved; /* after the solve, after the motion (team.h) */
@@ -99,7 +99,7 @@ void response_to(const struct response *k, const double impulse[3], double dv[3]
 
 /* Implicit: what the sweep does not see of the velocity that the impulse J of its contacts has given a disc, which then
  * counts for C. */
-void exchange_hide(struct exchange *exchange, size_t disc, double jx, double jy, double hidden[3]);
+void exchange_hide(struct exchange *exchange, size_t disc, const struct wrench *impulse, double hidden[3]);
 
 /* The exchange (force, torque) on the disc if it moves with the given velocity: (P, L) - M V. */
 void exchange_force(const struct gathered *g, double vx, double vy, double omega, double force[3]);

@@ -18,8 +18,8 @@ static bool allocate_followed(struct contacts *c, size_t discs, struct status *s
          (c->within.y = memory_allocate(discs, sizeof *c->within.y, what, status)) &&
          (c->within.vx = memory_allocate(discs, sizeof *c->within.vx, what, status)) &&
          (c->within.vy = memory_allocate(discs, sizeof *c->within.vy, what, status)) &&
-         (c->fx = memory_allocate(discs, sizeof *c->fx, what, status)) &&
-         (c->fy = memory_allocate(discs, sizeof *c->fy, what, status));
+         (c->within.omega = memory_allocate(discs, sizeof *c->within.omega, what, status)) &&
+         (c->impulse = memory_allocate(discs, sizeof *c->impulse, what, status));
 }
 
 bool contacts_create(struct contacts *c, const struct scene *scene, const struct stages *plan,
@@ -41,8 +41,8 @@ void contacts_destroy(struct contacts *c)
   overlap_destroy(&c->pairs);
   linked_cell_destroy(&c->linked);
   contact_memory_destroy(&c->memory);
-  void *const arrays[] = {c->list,      c->followed,  c->is_followed, c->within.x, c->within.y,
-                          c->within.vx, c->within.vy, c->fx,          c->fy};
+  void *const arrays[] = {c->list,      c->followed,  c->is_followed,  c->within.x, c->within.y,
+                          c->within.vx, c->within.vy, c->within.omega, c->impulse};
   for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; k++) free(arrays[k]);
   *c = (struct contacts){0};
 }
@@ -98,6 +98,7 @@ static bool collect(struct contacts *c, const struct occupation *o, struct discs
 {
   memset(d->contact_fx, 0, d->count * sizeof *d->contact_fx);
   memset(d->contact_fy, 0, d->count * sizeof *d->contact_fy);
+  memset(d->contact_torque, 0, d->count * sizeof *d->contact_torque);
   for (size_t k = 0; k < c->followed_count; k++) c->is_followed[c->followed[k]] = 0;
   c->followed_count = 0;
   const bool linked = c->scene->contact.search == SEARCH_LINKED_CELL;
@@ -141,7 +142,7 @@ static int prepare(struct contacts *m, const struct discs *d, const struct excha
                    size_t *memory)
 {
   const bool side = contact_is_with_side(c);
-  const struct meeting at = meeting_of(m->scene, d, c, &(struct places){d->x, d->y, d->vx, d->vy});
+  const struct meeting at = meeting_of(m->scene, d, c, &(struct places){d->x, d->y, d->vx, d->vy, d->omega});
   const double reach = d->radius[c->a] + (side ? 0 : d->radius[c->b]) + m->plan.reach;
   if (!side && at.distance >= reach && c->cells_area <= 0) return 1;
   c->inverse_mass = inverse_mass(d, c->a) + (side ? 0 : inverse_mass(d, c->b));
@@ -217,7 +218,8 @@ static void follow_disc(struct contacts *c, const struct discs *d, uint32_t i)
   c->within.y[i] = d->y[i];
   c->within.vx[i] = d->vx[i];
   c->within.vy[i] = d->vy[i];
-  c->fx[i] = c->fy[i] = 0;
+  c->within.omega[i] = d->omega[i];
+  c->impulse[i] = (struct wrench){0};
 }
 
 /* Whom to follow: where one sub-step is all, nobody. */
@@ -236,7 +238,7 @@ static void follow_discs(struct contacts *c, const struct discs *d)
  * what the contact has taken allows: cells that come into play at once would throw stiff discs apart. */
 static void follow_cells(const struct contacts *m, const struct discs *d, struct contact *c)
 {
-  const struct meeting at = meeting_of(m->scene, d, c, &(struct places){d->x, d->y, d->vx, d->vy});
+  const struct meeting at = meeting_of(m->scene, d, c, &(struct places){d->x, d->y, d->vx, d->vy, d->omega});
   const double overlap = lens_small_overlap(c->small, c->cells_area);
   c->touch = c->cells_area > 0 ? at.distance + fmin(overlap, overlap_that_holds(m, c, c->account.stored))
                                : fmin(at.distance, d->radius[c->a] + d->radius[c->b]);
@@ -249,6 +251,15 @@ static void follow_all_cells(struct contacts *m, const struct discs *d, bool tog
     if (m->list[k].inverse_mass > 0 && !contact_is_with_side(&m->list[k])) follow_cells(m, d, &m->list[k]);
 }
 
+/* Impulses of a contact, `normal` along and `tangential` across (counter-clockwise of) its normal, which b receives and a
+ * returns, as wrenches about their centres. */
+static void apply(struct contact *c, const struct meeting *at, double normal, double tangential)
+{
+  const double fx = normal * at->nx - tangential * at->ny, fy = normal * at->ny + tangential * at->nx;
+  c->on_a = (struct wrench){-fx, -fy, -at->arm[0] * tangential};
+  if (!contact_is_with_side(c)) c->on_b = (struct wrench){fx, fy, -at->arm[1] * tangential};
+}
+
 /* The impulse of a contact that presses over `kick`, in a sub-step of length h. */
 static void press(const struct contacts *m, const struct exchange *e, const struct meeting *at, double kick, double h,
                   struct contact *c)
@@ -259,8 +270,7 @@ static void press(const struct contacts *m, const struct exchange *e, const stru
   account->closing = at->closing;
   account->spring = fmin(kick * m->law.stiffness * at->lens.area, most);
   account->impulse = fmin(kick * contact_force(&m->law, at->lens.area, at->closing, c->damping), most);
-  c->fx = account->impulse * at->nx;
-  c->fy = account->impulse * at->ny;
+  apply(c, at, account->impulse, 0);
 }
 
 static void find_impulses(struct contacts *m, const struct discs *d, const struct exchange *e, const struct places *at,
@@ -269,7 +279,7 @@ static void find_impulses(struct contacts *m, const struct discs *d, const struc
   const struct part part = part_of(m->count, together);
   for (size_t k = part.from; k < part.end; k++) {
     struct contact *c = &m->list[k];
-    c->fx = c->fy = 0;
+    c->on_a = c->on_b = (struct wrench){0};
     if (c->inverse_mass <= 0) continue;
     const struct meeting meeting = meeting_of(m->scene, d, c, at);
     account_settle(&c->account, meeting.closing);
@@ -281,16 +291,34 @@ static void find_impulses(struct contacts *m, const struct discs *d, const struc
   wait_for_team(together);
 }
 
-/* Adds the impulses to their discs; by one thread. */
-static void add_impulses(const struct contacts *m, double *fx, double *fy)
+static void add_wrench(struct wrench *sum, const struct wrench *w)
+{
+  sum->fx += w->fx;
+  sum->fy += w->fy;
+  sum->torque += w->torque;
+}
+
+static void add_to_disc(struct discs *d, uint32_t i, const struct wrench *w)
+{
+  d->contact_fx[i] += w->fx;
+  d->contact_fy[i] += w->fy;
+  d->contact_torque[i] += w->torque;
+}
+
+/* Adds the impulses to their discs, or with sub-steps to those of the sub-step; by one thread. */
+static void add_impulses(struct contacts *m, struct discs *d, bool substeps)
 {
   for (size_t k = 0; k < m->count; k++) {
     const struct contact *c = &m->list[k];
-    fx[c->a] -= c->fx;
-    fy[c->a] -= c->fy;
-    if (contact_is_with_side(c)) continue;
-    fx[c->b] += c->fx;
-    fy[c->b] += c->fy;
+    const int ends = contact_is_with_side(c) ? 1 : 2;
+    for (int end = 0; end < ends && c->inverse_mass > 0; end++) {
+      const uint32_t i = end ? c->b : c->a;
+      const struct wrench *w = end ? &c->on_b : &c->on_a;
+      if (substeps)
+        add_wrench(&m->impulse[i], w);
+      else
+        add_to_disc(d, i, w);
+    }
   }
 }
 
@@ -301,14 +329,16 @@ static void move_followed(struct contacts *c, const struct exchange *e, struct d
   for (size_t k = part.from; k < part.end; k++) {
     const uint32_t i = c->followed[k];
     const struct response *r = &e->response[i];
-    const double jx = c->fx[i], jy = c->fy[i];
-    d->contact_fx[i] += jx;
-    d->contact_fy[i] += jy;
-    c->within.vx[i] += h * r->dvx + (r->xx * jx + r->xy * jy);
-    c->within.vy[i] += h * r->dvy + (r->xy * jx + r->yy * jy);
+    const struct wrench *impulse = &c->impulse[i];
+    double dv[3];
+    add_to_disc(d, i, impulse);
+    response_to(r, (const double[3]){impulse->fx, impulse->fy, impulse->torque}, dv);
+    c->within.vx[i] += h * r->dvx + dv[0];
+    c->within.vy[i] += h * r->dvy + dv[1];
+    c->within.omega[i] += h * r->domega + dv[2];
     c->within.x[i] += h * c->within.vx[i];
     c->within.y[i] += h * c->within.vy[i];
-    c->fx[i] = c->fy[i] = 0;
+    c->impulse[i] = (struct wrench){0};
   }
   wait_for_team(together);
 }
@@ -330,14 +360,14 @@ static void follow(struct contacts *c, const struct exchange *e, struct discs *d
 {
   const bool first = !together || omp_get_thread_num() == 0, moves = c->substeps > 1;
   const double h = 1.0 / c->substeps;
-  const struct places start = {d->x, d->y, d->vx, d->vy};
+  const struct places start = {d->x, d->y, d->vx, d->vy, d->omega};
   if (moves && c->scene->contact.area == AREA_CELLS) follow_all_cells(c, d, together);
   if (first) follow_discs(c, d);
   wait_for_team(together);
   for (int k = 0; k < c->substeps; k++) {
     find_impulses(c, d, e, moves ? &c->within : &start, 0.5 * (c->last_substep + h), h, together);
     if (first) {
-      add_impulses(c, moves ? c->fx : d->contact_fx, moves ? c->fy : d->contact_fy);
+      add_impulses(c, d, moves);
       c->last_substep = h;
     }
     wait_for_team(together);

@@ -38,12 +38,12 @@ struct contacts {
   /* with sub-steps: the discs that are followed through them */
   uint32_t *followed;
   size_t followed_count;
-  uint8_t *is_followed; /* [disc] */
-  struct places within; /* of followed discs only */
-  double *fx, *fy;      /* [disc] impulse in a sub-step */
-  double last_substep;  /* length of the last sub-step; 0 before the first */
-  int most_substeps;    /* of any step */
-  bool leave;           /* after the search (team.h) */
+  uint8_t *is_followed;   /* [disc] */
+  struct places within;   /* of followed discs only */
+  struct wrench *impulse; /* [disc] in a sub-step */
+  double last_substep;    /* length of the last sub-step; 0 before the first */
+  int most_substeps;      /* of any step */
+  bool leave;             /* after the search (team.h) */
 };
 
 bool contacts_create(struct contacts *contacts, const struct scene *scene, const struct stages *plan,

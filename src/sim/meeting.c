@@ -28,8 +28,22 @@ static struct meeting with_side(const struct scene *scene, const struct contact 
   const enum side_name side = (enum side_name)(c->b - contact_sides);
   const double *n = normal[side];
   const double distance = distance_to_side(scene, side, at->x[c->a], at->y[c->a]);
-  return (struct meeting){lens_of_wall(radius, distance), distance, n[0], n[1],
-                          at->vx[c->a] * n[0] + at->vy[c->a] * n[1]};
+  return (struct meeting){.lens = lens_of_wall(radius, distance),
+                          .distance = distance,
+                          .nx = n[0],
+                          .ny = n[1],
+                          .arm = {distance, 0},
+                          .closing = at->vx[c->a] * n[0] + at->vy[c->a] * n[1]};
+}
+
+/* Distances from the centres of two discs to the chord of their lens, which sum to the distance of centres; where one disc
+ * is inside the other, the contact point is the centre of the smaller one. */
+static void find_arms(double ra, double rb, double distance, double arm[2])
+{
+  const double difference = ra - rb;
+  const bool inside = distance <= fabs(difference);
+  arm[0] = inside ? (ra > rb ? distance : 0) : 0.5 * (distance + difference * (ra + rb) / distance);
+  arm[1] = distance - arm[0];
 }
 
 struct meeting meeting_of(const struct scene *scene, const struct discs *d, const struct contact *c,
@@ -44,6 +58,7 @@ struct meeting meeting_of(const struct scene *scene, const struct discs *d, cons
     meeting.nx = dx / distance;
     meeting.ny = dy / distance;
   }
+  find_arms(d->radius[a], d->radius[b], distance, meeting.arm);
   meeting.closing = (at->vx[a] - at->vx[b]) * meeting.nx + (at->vy[a] - at->vy[b]) * meeting.ny;
   if (scene->contact.area == AREA_CELLS)
     meeting.lens.area = c->touch > 0 ? lens_small_area(c->small, fmax(0, c->touch - distance)) : c->cells_area;

@@ -11,9 +11,9 @@ struct contact {
   double inverse_mass; /* 1/m_a + 1/m_b; 0: nothing to do */
   double damping;      /* eta */
   double cells_area;
-  double small;  /* of its lens, see lens_small */
-  double touch;  /* area by cells, in sub-steps: the distance at which it ends; else 0 */
-  double fx, fy; /* impulse on b in this sub-step; on a the opposite */
+  double small;             /* of its lens, see lens_small */
+  double touch;             /* area by cells, in sub-steps: the distance at which it ends; else 0 */
+  struct wrench on_a, on_b; /* impulse in this sub-step; on_b stays 0 with a side */
   struct contact_account account;
 };
 
@@ -24,13 +24,14 @@ static inline bool contact_is_with_side(const struct contact *c)
 
 /* Where discs are within a step: [disc]. */
 struct places {
-  double *x, *y, *vx, *vy;
+  double *x, *y, *vx, *vy, *omega;
 };
 
 struct meeting {
   struct lens lens; /* with the area that counts, and its own chord */
   double distance;  /* of centres, or of the centre from the side */
   double nx, ny;    /* the normal, from a to what it meets */
+  double arm[2];    /* from a, and from b, to the contact point: where the normal crosses the lens's chord */
   double closing;   /* speed of approach */
 };
 

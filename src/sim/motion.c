@@ -29,14 +29,14 @@ static void release(struct exchange *e, const struct discs *d, size_t i, const d
 static void finish_disc(const struct contacts *c, struct exchange *e, struct discs *d, size_t i)
 {
   const struct response *r = &e->response[i];
-  const double jx = d->contact_fx[i], jy = d->contact_fy[i];
+  const struct wrench impulse = {d->contact_fx[i], d->contact_fy[i], d->contact_torque[i]};
   double kick[3], hidden[3] = {0, 0, 0};
-  response_to(r, (const double[3]){jx, jy, 0}, kick);
+  response_to(r, (const double[3]){impulse.fx, impulse.fy, impulse.torque}, kick);
   const double dvx = r->dvx + kick[0], dvy = r->dvy + kick[1], domega = r->domega + kick[2];
   const struct surface_velocity old = {d->vx[i], d->vy[i], d->omega[i]};
   const struct surface_velocity new = {old.vx + dvx, old.vy + dvy, old.omega + domega};
   const bool implicit = e->solve == SOLVE_IMPLICIT;
-  if (implicit) exchange_hide(e, i, jx, jy, hidden);
+  if (implicit) exchange_hide(e, i, &impulse, hidden);
   e->surface[i] =
       implicit ? (struct surface_velocity){new.vx - hidden[0], new.vy - hidden[1], new.omega - hidden[2]} : old;
 

@@ -7,6 +7,11 @@
 #include "model/scene.h"
 #include "solid/shape.h"
 
+/* A force and its torque about the centre of a disc, or their impulse. */
+struct wrench {
+  double fx, fy, torque;
+};
+
 struct discs {
   size_t count;
   struct shape *shape;
