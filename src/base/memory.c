@@ -27,6 +27,14 @@ double memory_resident(void)
 
 static const double gib = 1 << 30;
 
+/* Bytes handed out. The one number of the process that the functions below share; threads may allocate at the same time. */
+static _Atomic size_t handed_out;
+
+double memory_handed_out(void)
+{
+  return (double)handed_out;
+}
+
 static bool out_of_memory(const char *what, double bytes, struct status *status)
 {
   status_fail(status, DELBM_FAILED, "out of memory: %.3g GiB for %s", bytes / gib, what);
@@ -61,6 +69,7 @@ void *memory_allocate(size_t count, size_t size, const char *what, struct status
     out_of_memory(what, wanted, status);
     return NULL;
   }
+  handed_out += bytes;
   if (alignment == huge_page) madvise(pointer, bytes, MADV_HUGEPAGE);
   return memset(pointer, 0, bytes);
 }
@@ -94,6 +103,7 @@ void *memory_map(size_t bytes, const char *what, struct status *status)
   if (skip) munmap(pointer, skip);
   if (skip < huge_page) munmap(pointer + skip + length, huge_page - skip);
   madvise(pointer + skip, length, MADV_HUGEPAGE); /* only advice: small pages give the same results */
+  handed_out += length;
   return pointer + skip;
 }
 

@@ -31,6 +31,10 @@ double memory_physical(void);
 /* Memory of this process that is resident, bytes; 0 where the kernel does not say. */
 double memory_resident(void);
 
+/* Bytes that the functions above have handed out since the start of the process, freed ones included: the difference of two
+ * calls is the same in every run. */
+double memory_handed_out(void);
+
 /* Peak resident memory of this process, MiB. */
 double memory_peak_mib(void);
 

@@ -198,7 +198,7 @@ static bool step(struct simulation *s, const struct rows *rows, double *since)
 
 bool simulation_measure(const struct scene *scene, struct simulation_memory *memory, struct status *status)
 {
-  const double mib = 1 << 20, before = memory_peak_mib() * mib;
+  const double before = memory_handed_out();
   struct simulation *s = create(scene, status);
   if (!s) return false;
   take_first_sums(s);
@@ -206,7 +206,8 @@ bool simulation_measure(const struct scene *scene, struct simulation_memory *mem
 #pragma omp parallel num_threads(threads_for(scene_cells(scene)))
     step_discs(s, next_occupation(s), &(double){clock_now()});
   }
-  *memory = (struct simulation_memory){(double)s->flow.populations.bytes, memory_peak_mib() * mib - before};
+  const double populations = (double)s->flow.populations.bytes;
+  *memory = (struct simulation_memory){populations, memory_handed_out() - before - populations};
   const bool good = simulation_usable(s, status);
   simulation_destroy(s);
   return good;

@@ -23,7 +23,7 @@ void simulation_destroy(struct simulation *simulation);
  * rest to which nothing is written, so that its pages are only promised. Costs one step without its sweep. */
 struct simulation_memory {
   double populations;
-  double tables; /* by how much the resident memory of the process has grown at its peak */
+  double tables; /* all other arrays; lists that grow while they are copied count twice, as at the peak */
 };
 bool simulation_measure(const struct scene *scene, struct simulation_memory *memory, struct status *status);
 
