@@ -308,13 +308,6 @@ static bool analyse_held(struct body *b, struct work *w, struct status *status)
   return add_shedding(b, w, series, 1, status);
 }
 
-static double mean_radius(const struct scene *scene)
-{
-  double sum = 0;
-  for (size_t i = 0; i < scene->particles.count; i++) sum += scene->particles.discs[i].radius;
-  return sum / (double)scene->particles.count;
-}
-
 bool body_analyse(struct body *b, const struct scene *scene, const double mean[2], const struct history *history,
                   struct status *status)
 {
@@ -340,7 +333,7 @@ bool body_analyse(struct body *b, const struct scene *scene, const double mean[2
   if (!series) return false;
   struct work w = {.scene = scene,
                    .history = history,
-                   .radius = mean_radius(scene),
+                   .radius = scene_mean_radius(scene),
                    .way = series,
                    .speed = series + history->snapshots};
   const bool ok = b->held ? analyse_held(b, &w, status) : analyse_free(b, &w, status);

@@ -291,18 +291,11 @@ static bool allocate(struct work *w, struct status *status)
          (w->held = memory_allocate(w->squares[0] * w->squares[1], sizeof *w->held, "the mixing", status));
 }
 
-static double mean_radius(const struct scene *scene)
-{
-  double sum = 0;
-  for (size_t i = 0; i < scene->particles.count; i++) sum += scene->particles.discs[i].radius;
-  return sum / (double)scene->particles.count;
-}
-
 bool settling_create(struct settling *s, const struct scene *scene, const struct history *history,
                      struct status *status)
 {
   *s = (struct settling){.snapshots = history->snapshots, .step = history->step, .initial = initial_of(scene)};
-  struct work w = {.scene = scene, .history = history, .to = s, .radius = mean_radius(scene)};
+  struct work w = {.scene = scene, .history = history, .to = s, .radius = scene_mean_radius(scene)};
   s->layer = 4 * w.radius;
   s->box = scene->domain.size[1];
   s->layers = (size_t)ceil(s->box / s->layer);

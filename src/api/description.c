@@ -1,19 +1,11 @@
 #include "api/description.h"
 
 #include "base/memory.h"
+#include "case/case_keys.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Enumerations are written by name; what is none of them by number, which reading refuses. */
-static void write_name(const char *const names[], unsigned count, unsigned index, FILE *text)
-{
-  if (index < count)
-    fputs(names[index], text);
-  else
-    fprintf(text, "%u", index);
-}
 
 static void write_pair(const char *key, const double pair[2], FILE *text)
 {
@@ -22,9 +14,13 @@ static void write_pair(const char *key, const double pair[2], FILE *text)
 
 static void write_side(const char *name, const struct delbm_side *side, FILE *text)
 {
-  static const char *const types[] = {"wall", "periodic", "inlet", "outlet"};
+  int length;
+  const char *type = key_choice(key_find("domain.left.type"), (int)side->type, &length);
   fprintf(text, "  %s: {type: ", name);
-  write_name(types, sizeof types / sizeof types[0], side->type, text);
+  if (length > 0)
+    fprintf(text, "%.*s", length, type);
+  else
+    fprintf(text, "%u", (unsigned)side->type); /* which reading refuses */
   if (side->velocity[0] != 0 || side->velocity[1] != 0) write_pair(", velocity", side->velocity, text);
   fputs("}\n", text);
 }

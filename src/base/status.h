@@ -12,7 +12,7 @@ enum { STATUS_MESSAGE = 1024 };
 
 struct status {
   enum delbm_code code;
-  bool out_of_memory; /* with DELBM_FAILED: nothing that the simulation has done */
+  bool out_of_memory; /* the cause is lack of memory, and no divergence */
   char message[STATUS_MESSAGE];
 };
 

@@ -24,7 +24,7 @@ struct path {
   size_t index;
 };
 
-/* What reading goes on in: a section of the table, its path in the case, and the struct its keys are stored in. */
+/* Context of reading: a section of the table, its path in the case, and the struct that its keys are stored in. */
 struct place {
   const char *section;
   const struct path *path;

@@ -27,6 +27,24 @@ const struct key *key_table(size_t *count)
   return table;
 }
 
+const struct key *key_find(const char *path)
+{
+  for (size_t i = 0; i < table_count; i++)
+    if (strcmp(table[i].path, path) == 0) return &table[i];
+  return NULL;
+}
+
+const char *key_choice(const struct key *key, int value, int *length)
+{
+  const char *at = key->allowed;
+  for (; value > 0 && *at; value--) {
+    at += strcspn(at, "|");
+    at += *at == '|';
+  }
+  *length = value == 0 ? (int)strcspn(at, "|") : 0;
+  return at;
+}
+
 bool key_is_required(const struct key *key)
 {
   return strcmp(key->fallback, "required") == 0;

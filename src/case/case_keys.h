@@ -36,6 +36,12 @@ enum key_role { ROLE_UNKNOWN, ROLE_KEY, ROLE_SECTION, ROLE_LIST };
 
 const struct key *key_table(size_t *count);
 
+/* The key of that path; NULL if there is none. */
+const struct key *key_find(const char *path);
+
+/* Name of a value of an enumeration that the key stores, and its length: 0 if there is no such value. */
+const char *key_choice(const struct key *key, int value, int *length);
+
 bool key_is_required(const struct key *key);
 bool key_is_automatic(const struct key *key);
 /* True if the fallback is a value, not a word about it. */

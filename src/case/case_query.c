@@ -12,12 +12,8 @@ bool draft_gives(const struct draft *draft, const char *path)
 
 static bool is_required(const char *path)
 {
-  size_t count;
-  const struct key *keys = key_table(&count);
-  for (size_t i = 0; i < count; i++) {
-    if (strcmp(keys[i].path, path) == 0) return key_is_required(&keys[i]);
-  }
-  return false;
+  const struct key *key = key_find(path);
+  return key && key_is_required(key);
 }
 
 bool draft_knows(const struct draft *draft, const char *path)

@@ -304,22 +304,16 @@ static void format_numbers(const struct key *key, const unsigned char *field, ch
   if (key_is_automatic(key) && strcmp(text, "0") == 0) snprintf(text, VALUE_TEXT, "auto");
 }
 
-static void format_choice(const char *choices, const unsigned char *field, char text[VALUE_TEXT])
-{
-  int index;
-  memcpy(&index, field, sizeof index);
-  const char *at = choices;
-  while (index-- > 0) at += strcspn(at, "|") + 1;
-  snprintf(text, VALUE_TEXT, "%.*s", (int)strcspn(at, "|"), at);
-}
-
 void value_format(const struct key *key, const void *owner, char text[VALUE_TEXT])
 {
   const unsigned char *field = (const unsigned char *)owner + key->offset;
   if (is_numeric(key->kind)) {
     format_numbers(key, field, text);
   } else if (key->kind == KEY_CHOICE) {
-    format_choice(key->allowed, field, text);
+    int value, length;
+    memcpy(&value, field, sizeof value);
+    const char *name = key_choice(key, value, &length);
+    snprintf(text, VALUE_TEXT, "%.*s", length, name);
   } else {
     bool flag;
     memcpy(&flag, field, sizeof flag);

@@ -4,6 +4,7 @@
 
 #include "base/memory.h"
 #include "base/threads.h"
+#include "case/case_keys.h"
 #include "case/case_overlaps.h"
 #include "case/case_tree.h"
 #include "contact/law.h"
@@ -17,13 +18,24 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+enum { CHOICE = 32 };
+
+/* A value of an enumeration, as it is named in a case. */
+static const char *choice_of(const char *path, unsigned value, char text[CHOICE])
+{
+  int length;
+  const char *name = key_choice(key_find(path), (int)value, &length);
+  snprintf(text, CHOICE, "%.*s", length, name);
+  return text;
+}
+
 static void print_box(const struct scene *scene)
 {
-  static const char *const types[] = {"wall", "periodic", "inlet", "outlet"};
+  char type[CHOICE];
   printf("box          %d x %d cells;", scene->domain.size[0], scene->domain.size[1]);
   for (int k = 0; k < SIDE_COUNT; k++) {
     const struct side *side = &scene->domain.side[k];
-    printf(" %s %s", side_name_text((enum side_name)k), types[side->type]);
+    printf(" %s %s", side_name_text((enum side_name)k), choice_of("domain.left.type", side->type, type));
     if (side->velocity[0] != 0 || side->velocity[1] != 0) printf(" at (%g, %g)", side->velocity[0], side->velocity[1]);
   }
   printf("\n");
@@ -64,12 +76,12 @@ static void advise_viscosity(const struct scene *scene, double wanted)
 
 static void print_fluid(const struct scene *scene)
 {
-  static const char *const collisions[] = {"bgk", "trt", "mrt", "adaptive"};
+  char collision[CHOICE];
   const struct rates *rates = &scene->fluid.rates;
   const double tau = 1 / rates->s_nu;
   printf("fluid        viscosity %g, tau %.6g; %s with s_nu %.6g, s_e %.6g, s_q %.6g (magic %.4g)",
-         scene->fluid.viscosity, tau, collisions[scene->fluid.collision], rates->s_nu, rates->s_e, rates->s_q,
-         (1 / rates->s_q - 0.5) * (tau - 0.5));
+         scene->fluid.viscosity, tau, choice_of("fluid.collision", scene->fluid.collision, collision), rates->s_nu,
+         rates->s_e, rates->s_q, (1 / rates->s_q - 0.5) * (tau - 0.5));
   if (rates->s_q_fast > 0)
     printf(" where |u| is far below %g cells/step, %g far above", scene->fluid.viscosity, rates->s_q_fast);
   printf("\n");
@@ -161,6 +173,7 @@ static void print_speeds(const struct scene *scene)
 
 static void print_discs(const struct scene *scene)
 {
+  char solve[CHOICE];
   static const char *const forms[] = {"unified (17)-(18)", "owen (12)-(13)", "midpoint"};
   double smallest = INFINITY, largest = 0, area = 0;
   size_t motions[3] = {0};
@@ -177,7 +190,7 @@ static void print_discs(const struct scene *scene)
          area / box);
   if (smallest < 2) printf("  note: radius below 2 cells; forces on so small a disc are rough; better: radius >= 2\n");
   printf("coupling     %s, %s\n", forms[scene->coupling.form],
-         scene->coupling.solve == SOLVE_IMPLICIT ? "implicit" : "explicit-averaged");
+         choice_of("coupling.solve", scene->coupling.solve, solve));
 }
 
 /* Overlaps at the start, which contacts push apart: the first few, and how many more. */
@@ -206,8 +219,9 @@ static bool print_overlaps(const struct scene *scene, struct status *status)
 static void print_contacts(const struct scene *scene, const struct stages *stages)
 {
   if (!stages->pairs && !stages->walls) return;
+  char area[CHOICE];
   printf("contacts     area by %s, stiffness %g, alpha %g, damping %g (%s)\n",
-         scene->contact.area == AREA_LENS ? "lens" : "cells", scene->contact.stiffness, scene->contact.alpha,
+         choice_of("contact.area", scene->contact.area, area), scene->contact.stiffness, scene->contact.alpha,
          scene->contact.damping, scene->contact.damping_form == DAMPING_CRITICAL ? "critical" : "as printed");
   if (scene->contact.substeps > 0)
     printf("sub-steps    %d a step, as the case says\n", scene->contact.substeps);
@@ -258,8 +272,7 @@ static bool print_memory(const struct scene *scene, struct status *status)
   const double output = bytes_of_output(scene), all = program + memory.populations + memory.tables + output;
   printf("memory       program %.4g MiB, fluid %.4g MiB (%.1f bytes a cell)", program / mib, memory.populations / mib,
          memory.populations / (double)scene_cells(scene));
-  if (scene->particles.count > 0)
-    printf(", discs %.4g MiB (%.0f bytes a disc)", memory.tables / mib, memory.tables / (double)scene->particles.count);
+  if (scene->particles.count > 0) printf(", discs %.4g MiB", memory.tables / mib);
   if (output > 0) printf(", output %.4g MiB", output / mib);
   printf(", in all about %.4g MiB\n", all / mib);
   if (all > most) printf("  note: more than the %.4g MiB of this machine; it would not be run here\n", most / mib);

@@ -57,3 +57,10 @@ bool scene_fill(struct scene *scene, struct status *status)
   scene->particles.count = listed + added;
   return true;
 }
+
+double scene_mean_radius(const struct scene *scene)
+{
+  double sum = 0;
+  for (size_t i = 0; i < scene->particles.count; i++) sum += scene->particles.discs[i].radius;
+  return sum / (double)scene->particles.count;
+}

@@ -147,6 +147,9 @@ struct scene {
 /* Releases what the scene holds (not the struct itself). */
 void scene_clear(struct scene *scene);
 
+/* Mean radius of the discs, of which there is one at least. */
+double scene_mean_radius(const struct scene *scene);
+
 /* Appends the discs of particles.fill to the listed ones, drawing the displacements from GSL's generator mt19937 with
  * the case's seed: row by row from the lower left, x before y. */
 bool scene_fill(struct scene *scene, struct status *status);
