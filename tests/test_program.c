@@ -182,6 +182,8 @@ Test(program, exit_codes_tell_what_went_wrong)
   cr_expect_eq(shell("%s run good.yaml --quiet --out good.yaml/x 2>err >/dev/null", DELBM), 4);
   cr_expect_eq(shell("%s info good.yaml >/dev/full 2>err", DELBM), 4);
   cr_expect_eq(shell("%s bench nosuch 2>err", DELBM), 2);
+  cr_expect_eq(shell("mkdir own && cp good.yaml own/case.yaml && %s run own --out own 2>err", DELBM), 2);
+  cr_expect(contains("err", "would overwrite its own case"));
 }
 
 Test(program, suggests_near_spellings_and_nothing_far)
@@ -447,7 +449,7 @@ Test(program, info_warns_of_what_the_maps_found_to_fail)
       {"--set coupling.form=owen --set run.steps=50000", "shake each other"},
       {"--set coupling.form=unified --set fluid.viscosity=0.05", "too little drag"},
       {"--set contact.substeps=1 --set contact.stiffness=1000", "1 sub-steps are fewer than"},
-      {"--set 'particles.gravity=[0, -0.02]'", "of the fluid's pressure"},
+      {"--set 'particles.gravity=[0, -0.002]'", "of the fluid's pressure"},
       {"--set domain.left=periodic --set domain.right=periodic --set domain.bottom=periodic --set domain.top=periodic "
        "--set run.steps=3000",
        "nothing holds the box"},
@@ -489,6 +491,9 @@ Test(program, info_warns_of_the_places_of_maps_of_held_discs_where_runs_failed_a
                spins[c]);
       expect_warning_as_in_map(report, "fixed disc that spins", forms[form], c, settings);
     }
+  cr_expect_eq(shell("$DELBM info held.yaml --set coupling.form=owen --set domain.top.velocity=[0.1,0] "
+                     "--set particles.discs.0.position=[40,30] >out && ! grep 'form: midpoint does not' out"),
+               0, "a disc far from the lid");
   free(report);
 }
 
