@@ -1,5 +1,5 @@
 /* What a run of fluid alone costs beyond the bare sweep: the same box, closed and with a moving lid, stepped by the
- * stage itself and by a simulation, which looks for divergence, keeps the clock and would have room for discs. Both end with
+ * stage itself and by a simulation, which checks for divergence, keeps the clock and would have room for discs. Both end with
  * the same bits. */
 #include "base/clock.h"
 #include "base/memory.h"

@@ -111,7 +111,7 @@ Test(readme, its_block_of_units_is_a_case)
 Test(readme, benchmarks_that_it_names_are_in_the_list)
 {
   cr_expect_eq(shell("$DELBM bench --list | awk '/^benchmarks/ {on = 1; next} /^[^ ]/ {on = 0} on {print $1}' >names; "
-                     "cat $SOURCE/README.md $SOURCE/bench/README.md $SOURCE/cases/*/README.md | grep -oE 'delbm bench "
+                     "cat $SOURCE/README.md $SOURCE/bench/*.md $SOURCE/cases/*/README.md | grep -oE 'delbm bench "
                      "[a-z]+' | awk '{print $3}' | sort -u >named; test $(wc -l <named) -gt 3 && "
                      "while read n; do grep -qx $n names || { echo $n >&2; exit 1; }; done <named"),
                0);

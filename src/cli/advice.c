@@ -13,7 +13,7 @@ static void advise_rates(const struct scene *scene)
   if (scene->fluid.collision == COLLISION_MRT && rates->s_q < 0.25 && fabs(rates->s_e - rates->s_nu) > 0.1)
     printf(
         "  note: s_q %.3g beside s_e %.3g diverges first of all choices at small viscosity; collision: adaptive is as "
-        "accurate in slow flow and goes farther (bench/README.md, stability)\n",
+        "accurate in slow flow and goes farther (bench/STABILITY.md)\n",
         rates->s_q, rates->s_e);
 }
 
@@ -24,7 +24,7 @@ static void advise_solve(const struct scene *scene)
   if (disc < scene->particles.count)
     printf(
         "  note: explicit-averaged diverges for light discs (disc %zu: density %g); coupling.solve: implicit does not "
-        "(bench/README.md, stability)\n",
+        "(bench/STABILITY.md)\n",
         disc, scene->particles.discs[disc].density);
 }
 
@@ -39,7 +39,7 @@ static void advise_light(const struct scene *scene)
     const bool small = disc->radius < 0.7 || (disc->radius < 1.8 && viscosity <= 0.1);
     if (disc->motion != DISC_FREE || disc->density > 0.97 || !small) continue;
     printf("  note: disc %zu (radius %g, density %g) is so small and light that, at viscosity %g, it may gain speed by "
-           "itself until the run diverges; a radius of 2 or more does not (bench/README.md, stability)\n",
+           "itself until the run diverges; a radius of 2 or more does not (bench/STABILITY.md)\n",
            i, disc->radius, disc->density, viscosity);
     return;
   }
@@ -51,8 +51,8 @@ static void advise_form(const struct scene *scene)
   double smallest = INFINITY;
   for (size_t i = 0; i < scene->particles.count; i++) smallest = fmin(smallest, scene->particles.discs[i].radius);
   if (scene->coupling.form == FORM_UNIFIED && scene->fluid.viscosity >= 0.05 && smallest <= 10)
-    printf("  note: form: unified has 6 %% too little drag on discs of R = 5 at viscosity 0.05 and 13 %% at 1/6; form: "
-           "midpoint is within 1 %% at any viscosity (bench/README.md, drag)\n");
+    printf("  note: form: unified has 5 %% too little drag on discs of R = 5 at viscosity 0.05 and 11 %% at 1/6; form: "
+           "midpoint is within 2 %% at any viscosity (bench/README.md, drag)\n");
 }
 
 /* True if a side that moves passes over a part of the disc. */
@@ -82,13 +82,13 @@ static void advise_form_inside(const struct scene *scene)
     if (disc->motion == DISC_FREE || !(owen ? rim > 0 || is_under_moving_side(scene, disc) : rim > least_rim)) continue;
     printf(
         "  note: with form: %s the fluid inside disc %zu, which %s, gains until the run diverges; form: midpoint does "
-        "not (bench/README.md, stability)\n",
+        "not (bench/STABILITY.md)\n",
         owen ? "owen" : "unified", i, rim > 0 ? "is made to spin" : "a moving side passes over");
     return;
   }
   if (owen && free_discs > 1 && scene->run.steps > 10000)
     printf("  note: with form: owen the fluid inside discs that shake each other gains until the run diverges (a pile "
-           "of 150: in 31,000 steps); form: midpoint does not (bench/README.md, stability)\n");
+           "of 150: in 31,000 steps); form: midpoint does not (bench/STABILITY.md)\n");
 }
 
 /* Maps "impact": contacts too short for the sub-steps that the case fixes. */
@@ -100,7 +100,7 @@ static void advise_substeps(const struct scene *scene)
   const int needed = plan_largest_substeps(&freely);
   if (needed > scene->contact.substeps)
     printf("  note: %d sub-steps are fewer than the %d that contacts may need: they damp otherwise than they should, "
-           "and give way further; substeps: auto does not (bench/README.md, stability)\n",
+           "and give way further; substeps: auto does not (bench/STABILITY.md)\n",
            scene->contact.substeps, needed);
 }
 
@@ -111,7 +111,7 @@ static void advise_weight(const struct scene *scene)
     const double part = estimate_load(scene, axis);
     if (part < estimate_most_load) continue;
     printf("  note: the discs weigh %.0f %% of the fluid's pressure on the side below; it rings or diverges; better: "
-           "particles.gravity <= %.2g cells/step^2, and more steps (bench/README.md, stability)\n",
+           "particles.gravity <= %.2g cells/step^2, and more steps (bench/STABILITY.md)\n",
            100 * part, fabs(scene->particles.gravity[axis]) * estimate_most_load / part);
   }
 }

@@ -1,4 +1,4 @@
-/* What the maps of `delbm bench stability` (bench/README.md) say about a case: warnings, each with what to do instead. */
+/* What the maps of `delbm bench stability` (bench/STABILITY.md) say about a case: warnings, each with what to do instead. */
 #ifndef DELBM_CLI_ADVICE_H
 #define DELBM_CLI_ADVICE_H
 

@@ -94,7 +94,7 @@ static void print_fluid(const struct scene *scene)
   }
   if (tau < estimate_least_tau) {
     printf("  note: tau below %g, close to 1/2: hardly any damping of what goes wrong, and no collision operator is "
-           "reliable above Mach 0.2 (bench/README.md, stability); better: ",
+           "reliable above Mach 0.2 (bench/STABILITY.md); better: ",
            estimate_least_tau);
     advise_viscosity(scene, (estimate_least_tau - 0.5) / 3);
   }

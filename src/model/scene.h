@@ -118,7 +118,7 @@ struct scene {
 
   struct {
     int64_t steps;
-    int check; /* steps between two looks for divergence, 1 to 100 */
+    int check; /* steps between two checks for divergence, 1 to 100 */
     struct {
       int depth; /* steps in a block of the sweep, 0: chosen by measurement */
       int width; /* cells of its tiles, 0: whole rows */

@@ -82,7 +82,7 @@ struct simulation_report {
   double momentum_drift; /* largest of the two components of the change of the conserved momentum not explained by body
                                forces, over the fluid's mass; NAN where walls, inlets or outlets exchange momentum */
   double mean_velocity[2];    /* momentum of the fluid over its mass, cells inside discs included, cells/step */
-  double max_mach;            /* largest seen at the looks for divergence, and where it diverged */
+  double max_mach;            /* largest seen at the checks for divergence, and where it diverged */
   char blocking[32];          /* blocking of the sweep in time: off, its depth, or depth x width */
   char binding[THREADS_TEXT]; /* of threads to processors */
   int max_substeps;           /* most sub-steps that a step has taken */
