@@ -40,22 +40,22 @@ static bool add_pair(const struct scene *scene, size_t i, size_t j, struct case_
   return depth <= 0 || add(found, i < j ? i : j, i < j ? j : i, depth, status);
 }
 
-/* The stretch in x that a disc takes. */
-struct stretch {
+/* What a disc takes of the x axis. */
+struct span {
   double left, right;
   size_t disc;
 };
 
-static int compare_stretches(const void *a, const void *b)
+static int compare_spans(const void *a, const void *b)
 {
-  const struct stretch *l = a, *r = b;
+  const struct span *l = a, *r = b;
   if (l->left != r->left) return l->left < r->left ? -1 : 1;
   return l->disc < r->disc ? -1 : l->disc > r->disc;
 }
 
 /* Sweep and prune along x: with those that begin before a disc ends, and across a periodic side with the images of the
  * leftmost. */
-static bool sweep(const struct scene *scene, const struct stretch *s, size_t n, struct case_overlaps *found,
+static bool sweep(const struct scene *scene, const struct span *s, size_t n, struct case_overlaps *found,
                   struct status *status)
 {
   const double size = scene->domain.size[0];
@@ -72,15 +72,15 @@ static bool sweep(const struct scene *scene, const struct stretch *s, size_t n, 
 bool case_overlaps_find(const struct scene *scene, size_t discs, struct case_overlaps *found, struct status *status)
 {
   *found = (struct case_overlaps){0};
-  struct stretch *stretches = memory_allocate(discs, sizeof *stretches, "the search for overlaps", status);
-  if (!stretches) return false;
+  struct span *spans = memory_allocate(discs, sizeof *spans, "the search for overlaps", status);
+  if (!spans) return false;
   for (size_t i = 0; i < discs; i++) {
     const struct disc_spec *disc = &scene->particles.discs[i];
-    stretches[i] = (struct stretch){disc->position[0] - disc->radius, disc->position[0] + disc->radius, i};
+    spans[i] = (struct span){disc->position[0] - disc->radius, disc->position[0] + disc->radius, i};
   }
-  qsort(stretches, discs, sizeof *stretches, compare_stretches);
-  const bool ok = sweep(scene, stretches, discs, found, status);
-  free(stretches);
+  qsort(spans, discs, sizeof *spans, compare_spans);
+  const bool ok = sweep(scene, spans, discs, found, status);
+  free(spans);
   return ok;
 }
 

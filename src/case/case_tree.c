@@ -110,14 +110,14 @@ struct tree_node *tree_find(struct tree_node *root, const char *path)
 }
 
 /* Text under construction, of which at most `limit` bytes are kept. */
-struct line {
+struct excerpt {
   char *text;
   size_t length;
   size_t limit;
   bool cut;
 };
 
-static void line_byte(struct line *line, char byte)
+static void line_byte(struct excerpt *line, char byte)
 {
   if (line->length >= line->limit) {
     line->cut = true;
@@ -127,13 +127,13 @@ static void line_byte(struct line *line, char byte)
   line->text[line->length++] = control ? ' ' : byte;
 }
 
-static void line_text(struct line *line, const char *text)
+static void line_text(struct excerpt *line, const char *text)
 {
   for (; *text && !line->cut; text++) line_byte(line, *text);
 }
 
 /* Ends the text, marking a cut, which is moved to the start of a UTF-8 character. */
-static void line_end(struct line *line)
+static void line_end(struct excerpt *line)
 {
   size_t end = line->length;
   if (line->cut) {
@@ -143,7 +143,7 @@ static void line_end(struct line *line)
   memcpy(line->text + end, line->cut ? "..." : "", line->cut ? sizeof "..." : 1);
 }
 
-static void line_node(struct line *line, const struct tree_node *node)
+static void line_node(struct excerpt *line, const struct tree_node *node)
 {
   if (node->kind == TREE_SCALAR) {
     if (!node->plain) line_byte(line, '"');
@@ -166,7 +166,7 @@ static void line_node(struct line *line, const struct tree_node *node)
 
 void tree_print(const struct tree_node *node, char text[TREE_TEXT])
 {
-  struct line line = {.text = text, .limit = PRINTED_BYTES};
+  struct excerpt line = {.text = text, .limit = PRINTED_BYTES};
   line_node(&line, node);
   line_end(&line);
   if (*text == '\0') snprintf(text, TREE_TEXT, "nothing");
@@ -174,14 +174,14 @@ void tree_print(const struct tree_node *node, char text[TREE_TEXT])
 
 void tree_show(const char *text, char shown[TREE_TEXT])
 {
-  struct line line = {.text = shown, .limit = PRINTED_BYTES};
+  struct excerpt line = {.text = shown, .limit = PRINTED_BYTES};
   line_text(&line, text);
   line_end(&line);
 }
 
 void tree_place(const struct tree_node *node, char place[TREE_PLACE])
 {
-  struct line line = {.text = place, .limit = TREE_PLACE - 64};
+  struct excerpt line = {.text = place, .limit = TREE_PLACE - 64};
   line_text(&line, node->origin);
   line_end(&line);
   size_t length = strlen(place);

@@ -208,7 +208,7 @@ bool simulation_measure(const struct scene *scene, struct simulation_memory *mem
   }
   const double populations = (double)s->flow.populations.bytes;
   *memory = (struct simulation_memory){populations, memory_handed_out() - before - populations};
-  const bool good = simulation_usable(s, status);
+  const bool good = simulation_usable(s, status) || !status->out_of_memory; /* whatever else becomes of the run */
   simulation_destroy(s);
   return good;
 }
