@@ -9,7 +9,7 @@ enum delbm_code {
   DELBM_OK = 0,
   DELBM_FAILED = 1,        /* the run failed: it diverged, or memory ran out */
   DELBM_USAGE = 2,         /* the command line was not understood, or a call had an argument that it must not have */
-  DELBM_INVALID = 3,       /* the case is not valid */
+  DELBM_INVALID = 3,       /* the case is not valid, or too large for this machine */
   DELBM_IO = 4,            /* reading or writing a file failed */
   DELBM_HUNG_UP = 129,     /* by SIGHUP, after a checkpoint */
   DELBM_INTERRUPTED = 130, /* by SIGINT, after a checkpoint */
