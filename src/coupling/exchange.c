@@ -1,3 +1,51 @@
+/* The exchange of momentum between fluid and discs, and the inertia of a disc in it.
+ *
+ * Linear solve. A cell of weight B receives the momentum B (-2 j + 2 rho v) from the solid, j with the force of the step, v the
+ * velocity of the solid in the cell: linear in the velocity (V, omega) of the disc. Over the cells of a disc, with b = 2 w_p B
+ * and lever arm r, the streamed, not yet collided populations give
+ *   P = sum b j, L = sum b (r x j), M0 = sum b rho, M1 = sum b rho r, M2 = sum b rho |r|^2,
+ * and the change of velocity dV = (dVx, dVy, domega) in the step follows from
+ *   A dV = R,  A = D + M,  D = diag(m - m_f, m - m_f, I - I_f),  R = weight + (P, L) - M V,
+ *        | M0    0    -M1y |
+ *   M =  | 0     M0    M1x |
+ *        | -M1y  M1x   M2  |
+ * The sweep then imposes the new velocity and needs no reduction. m_f and I_f, of the fluid that the disc displaces, are
+ * subtracted because the fluid inside the disc moves with it and is counted as fluid.
+ *
+ * Contacts. An impulse within one step acts against m - m_f + M0, about m + m_f, and not against m: where B = 1 the fluid
+ * inside is reflected about the new velocity, so takes up twice the momentum that it needs and returns the excess one step
+ * later. A contact that is over by then would gain that energy. Half of M0 is what the fluid inside needs to follow, so
+ * impacts act through K with the fraction s = 1/2 of M, and the surface that the sweep imposes takes only that fraction of
+ * the velocity that they add. The weight of discs at rest, however, is a steady force and acts through A as gravity does. The
+ * steady part is C, the mean of the contact impulse J of a step over 100 steps:
+ *   K^-1 = D + s M,  dV = A^-1 (R + C) + K (J - C),  surface velocity V + dV - (1 - s) K (J - C),  C' = C + (J - C)/100.
+ * s = 1 where D + M/2 is not positive definite, as of a light disc pressed far into a wall. With s = 1 everywhere the test
+ * impact/in_fluid_without_damping_no_energy_is_gained_at_any_stiffness fails; without C, stability/
+ * a_disc_on_the_ground_comes_to_rest_and_the_contact_carries_its_weight.
+ *
+ * Virtual mass of light discs (cf. Schwarz, Kempe & Froehlich 2015). m_f counts all fluid inside the disc, but only M0/2 of
+ * it follows within a step; the rest, in partly covered cells, follows in the time of sound. Below a density of
+ * 1 - M0/(2 m_f), 0.1 to 0.3, the inertia within a step, m - m_f + M0/2, is negative, and sound between two discs, or a
+ * disc and a side, grows. A virtual mass c makes it at least 0.15 m_f; the momentum p that c withholds is returned over a time T:
+ *   A = ... + c,  R = ... + p/T,  p' = (1 - 1/T) p + c dV.
+ * A steady acceleration is not changed, since then p = T c dV. Conserved is (m - m_f) V + p, also where c changes as the disc
+ * moves over the cells. Rotation likewise. Momentum that is returned late feeds oscillations: at an angular frequency w the
+ * power c w^2 T/(1 + w^2 T^2) V^2, where the boundary layer takes 4 pi R sqrt(nu w/2) V^2; the first is larger for
+ * small discs at small viscosity. With T at least (c R/m_f)^2/nu, the time in which momentum diffuses over the part c/m_f
+ * of R, it is at most a fifth of the second (test stability/a_crowd_of_small_light_discs_at_small_viscosity_rises_quietly).
+ *
+ * Where a side or another disc cuts off part of a light disc, the centre of the covered part is not that of the disc: M1
+ * couples translation and rotation, and the least eigenvalue of D + M/2 counts, not its diagonal. m_f also counts fluid
+ * beyond the side, and fluid of shared cells twice. So the bound of 0.15 grows by a multiple of |M1|/2, which vanishes in free
+ * fluid. With 0.15 alone a disc of density 0.1, R = 3, against a wall at viscosity 1 rocks at a period of 5.5 steps,
+ * growing by 3 % a step.
+ *
+ * explicit-averaged, for comparison: A = diag(m, m, I), R = weight + mean of the exchange at V over this step and the
+ * step before; the surface velocity is V.
+ *
+ * The sums are taken inside the sweep of the step before, row by row and one row behind it, while the row is in cache
+ * (sim/flow.c). They are kept per row of each disc and added from the lowest row up, so that no bit depends on how rows are
+ * shared out to threads. */
 #include "coupling/exchange.h"
 
 #include "base/memory.h"
@@ -5,20 +53,20 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* The least inertia, of a disc and what follows it at once, in units of m_f and I_f. */
-static const double least_inertia = 0.15;
+/* Minimum of the inertia within a step, in units of m_f and I_f. */
+static const double min_inertia = 0.15;
 
-/* By how many times their coupling the inertias of translation and rotation exceed the least: with 1 the least eigenvalue
- * is the least inertia. Fluid that m_f takes out is not there either where a side cuts the disc off, which the rest is for:
- * with 3 a disc of R = 8, density 0.01, diverged at rest against a wall at viscosity 10. */
+/* Added to that minimum per coupling |M1|/2. With 1 the least eigenvalue is the minimum; more is needed where a side cuts the
+ * disc off, since m_f then counts fluid that is not there: with 3 a disc of R = 8, density 0.01, diverged at rest against a
+ * wall at viscosity 10. */
 static const double coupled_inertia = 5;
 
-/* Over which C is a mean, in steps: much longer than an impact to which s matters. */
-static const double carried_time = 100;
+/* Duration of the mean C, in steps: much longer than an impact for which s matters. */
+static const double mean_contact_time = 100;
 
 static bool is_light(const struct discs *d, size_t i)
 {
-  return d->motion[i] == DISC_FREE && d->mass[i] < (1 + least_inertia) * d->fluid_mass[i];
+  return d->motion[i] == DISC_FREE && d->mass[i] < (1 + min_inertia) * d->fluid_mass[i];
 }
 
 static bool any_light(const struct exchange *e, const struct discs *d)
@@ -29,20 +77,26 @@ static bool any_light(const struct exchange *e, const struct discs *d)
   return false;
 }
 
-struct held exchange_held(const struct exchange *e, const struct discs *d, size_t i)
+/* Virtual mass c and moment of inertia, and the time T over which what they withhold is returned. */
+struct virtual_mass {
+  double mass, inertia, time;
+};
+
+/* All zero for a disc that is not light. */
+static struct virtual_mass virtual_mass_of(const struct exchange *e, const struct discs *d, size_t i)
 {
-  if (!e->memory || !is_light(d, i)) return (struct held){0};
+  if (!e->deferred || !is_light(d, i)) return (struct virtual_mass){0};
   const struct gathered *g = &e->gathered[i];
   const double inertia = d->mass[i] - d->fluid_mass[i] + g->m0 / 2;
   const double angular = d->inertia[i] - d->fluid_inertia[i] + g->m2 / 2;
   /* off-diagonal part of diag(m - m_f, m - m_f, I - I_f) + M/2 in those units */
   const double coupling = sqrt((g->m1x * g->m1x + g->m1y * g->m1y) / (4 * d->fluid_mass[i] * d->fluid_inertia[i]));
-  const double least = least_inertia + coupled_inertia * coupling;
-  const double mass = fmax(0, least * d->fluid_mass[i] - inertia);
+  const double min = min_inertia + coupled_inertia * coupling;
+  const double mass = fmax(0, min * d->fluid_mass[i] - inertia);
   const double depth = mass / d->fluid_mass[i] * d->radius[i];
-  return (struct held){.mass = mass,
-                       .inertia = fmax(0, least * d->fluid_inertia[i] - angular),
-                       .time = fmax(4 * sqrt(3) * d->radius[i], depth * depth / e->viscosity)};
+  return (struct virtual_mass){.mass = mass,
+                               .inertia = fmax(0, min * d->fluid_inertia[i] - angular),
+                               .time = fmax(4 * sqrt(3) * d->radius[i], depth * depth / e->viscosity)};
 }
 
 bool exchange_create(struct exchange *e, const struct scene *scene, const struct discs *discs, struct status *status)
@@ -54,10 +108,11 @@ bool exchange_create(struct exchange *e, const struct scene *scene, const struct
   if ((e->gathered = memory_allocate(discs->count, sizeof *e->gathered, what, status)) &&
       (e->response = memory_allocate(discs->count, sizeof *e->response, what, status)) &&
       (e->surface = memory_allocate(discs->count, sizeof *e->surface, what, status)) &&
-      (!any_light(e, discs) || (e->memory = memory_allocate(3 * discs->count, sizeof *e->memory, what, status))) &&
+      (!any_light(e, discs) || (e->deferred = memory_allocate(3 * discs->count, sizeof *e->deferred, what, status))) &&
       (e->solve != SOLVE_IMPLICIT ||
-       (e->carried = memory_allocate(3 * discs->count, sizeof *e->carried, what, status))) &&
-      (e->solve == SOLVE_IMPLICIT || (e->last = memory_allocate(3 * discs->count, sizeof *e->last, what, status))))
+       (e->mean_contact = memory_allocate(3 * discs->count, sizeof *e->mean_contact, what, status))) &&
+      (e->solve == SOLVE_IMPLICIT ||
+       (e->last_exchange = memory_allocate(3 * discs->count, sizeof *e->last_exchange, what, status))))
     return true;
   exchange_destroy(e);
   return false;
@@ -68,25 +123,26 @@ void exchange_destroy(struct exchange *e)
   free(e->gathered);
   free(e->response);
   free(e->surface);
-  free(e->last);
-  free(e->memory);
-  free(e->carried);
+  free(e->last_exchange);
+  free(e->deferred);
+  free(e->mean_contact);
   *e = (struct exchange){0};
 }
 
 bool exchange_store(struct exchange *e, size_t discs, struct store *store, struct status *status)
 {
   const size_t bytes = 3 * discs * sizeof(double);
-  uint8_t has_last = e->has_last; /* any byte may come back, of which not every one is a bool */
-  const bool stored = store_mark(store, "exchange", status) && store_bytes(store, &has_last, sizeof has_last, status) &&
-                      (!e->last || store_bytes(store, e->last, bytes, status)) &&
-                      (!e->memory || store_bytes(store, e->memory, bytes, status)) &&
-                      (!e->carried || store_bytes(store, e->carried, bytes, status));
-  e->has_last = has_last;
+  uint8_t has_last_exchange = e->has_last_exchange; /* any byte may come back, of which not every one is a bool */
+  const bool stored = store_mark(store, "exchange", status) &&
+                      store_bytes(store, &has_last_exchange, sizeof has_last_exchange, status) &&
+                      (!e->last_exchange || store_bytes(store, e->last_exchange, bytes, status)) &&
+                      (!e->deferred || store_bytes(store, e->deferred, bytes, status)) &&
+                      (!e->mean_contact || store_bytes(store, e->mean_contact, bytes, status));
+  e->has_last_exchange = has_last_exchange;
   return stored;
 }
 
-/* What the sweep found of a disc, row by row from the lowest; with the force of the coming step, and b = 2 share. */
+/* Sums over the rows of a disc, from the lowest up, with the force of the coming step; b = 2 w_p B. */
 static struct gathered add_up(const struct occupation *o, const struct sweep_constants *c, size_t disc)
 {
   struct gathered g = {0};
@@ -109,7 +165,8 @@ static struct gathered add_up(const struct occupation *o, const struct sweep_con
   return g;
 }
 
-void exchange_force(const struct gathered *g, double vx, double vy, double omega, double force[3])
+/* The exchange (force, torque) on a disc that moves with the given velocity: (P, L) - M V. */
+static void exchange_force(const struct gathered *g, double vx, double vy, double omega, double force[3])
 {
   force[0] = g->px - (g->m0 * vx - g->m1y * omega);
   force[1] = g->py - (g->m0 * vy + g->m1x * omega);
@@ -123,11 +180,12 @@ void response_to(const struct response *k, const double impulse[3], double dv[3]
   dv[2] = k->xw * impulse[0] + k->yw * impulse[1] + k->ww * impulse[2];
 }
 
-/* Inverse of diag(mass, mass, inertia) + share M, by elimination of omega: A = [[t, 0, -y], [0, t, x], [-y, x, w]]. False
+/* Inverse of diag(mass, mass, inertia) + fraction M, by elimination of omega: A = [[t, 0, -y], [0, t, x], [-y, x, w]]. False
  * unless A is positive definite. */
-static bool invert(const struct gathered *g, double mass, double inertia, double share, struct response *inverse)
+static bool invert(const struct gathered *g, double mass, double inertia, double fraction, struct response *inverse)
 {
-  const double t = mass + share * g->m0, w = inertia + share * g->m2, x = share * g->m1x, y = share * g->m1y;
+  const double t = mass + fraction * g->m0, w = inertia + fraction * g->m2, x = fraction * g->m1x,
+               y = fraction * g->m1y;
   const double schur = w - (x * x + y * y) / t;
   if (!(t > 0 && schur > 0)) return false;
   inverse->ww = 1 / schur;
@@ -136,11 +194,11 @@ static bool invert(const struct gathered *g, double mass, double inertia, double
   inverse->xx = 1 / t + y / t * inverse->xw;
   inverse->xy = -x / t * inverse->xw;
   inverse->yy = 1 / t - x / t * inverse->yw;
-  inverse->share = share;
+  inverse->impact_fraction = fraction;
   return true;
 }
 
-/* K, and dV without contacts; r is R, and then R + C. */
+/* K, and the change of velocity without contacts, A^-1 (R + C) - K C; r is R, and then R + C. */
 static bool respond(struct response *response, const struct gathered *g, double mass, double inertia, double r[3],
                     const double c[3])
 {
@@ -148,7 +206,7 @@ static bool respond(struct response *response, const struct gathered *g, double 
   for (int k = 0; k < 3; k++) r[k] += c[k];
   if (!invert(g, mass, inertia, 1, response)) return false;
   response_to(response, r, free);
-  invert(g, mass, inertia, 0.5, response); /* or what stands there remains */
+  invert(g, mass, inertia, 0.5, response); /* if it fails, the inverse with s = 1 remains */
   response_to(response, c, back);
   response->dvx = free[0] - back[0];
   response->dvy = free[1] - back[1];
@@ -162,24 +220,13 @@ static bool solve_implicit(struct exchange *e, const struct discs *d, size_t i, 
   exchange_force(&e->gathered[i], d->vx[i], d->vy[i], d->omega[i], r);
   r[0] += weight[0];
   r[1] += weight[1];
-  const struct held held = exchange_held(e, d, i);
-  if (held.time > 0) {
-    const double *p = &e->memory[3 * i];
-    for (int k = 0; k < 3; k++) r[k] += p[k] / held.time;
+  const struct virtual_mass added = virtual_mass_of(e, d, i);
+  if (added.time > 0) {
+    const double *p = &e->deferred[3 * i];
+    for (int k = 0; k < 3; k++) r[k] += p[k] / added.time;
   }
-  return respond(&e->response[i], &e->gathered[i], d->mass[i] - d->fluid_mass[i] + held.mass,
-                 d->inertia[i] - d->fluid_inertia[i] + held.inertia, r, &e->carried[3 * i]);
-}
-
-void exchange_hide(struct exchange *e, size_t i, const struct wrench *impulse, double hidden[3])
-{
-  double *carried = &e->carried[3 * i];
-  const double impact[3] = {impulse->fx - carried[0], impulse->fy - carried[1], impulse->torque - carried[2]};
-  response_to(&e->response[i], impact, hidden);
-  for (int k = 0; k < 3; k++) {
-    hidden[k] *= 1 - e->response[i].share;
-    carried[k] += impact[k] / carried_time;
-  }
+  return respond(&e->response[i], &e->gathered[i], d->mass[i] - d->fluid_mass[i] + added.mass,
+                 d->inertia[i] - d->fluid_inertia[i] + added.inertia, r, &e->mean_contact[3 * i]);
 }
 
 static void solve_explicit(struct exchange *e, const struct discs *d, size_t i, double weight[2])
@@ -187,8 +234,8 @@ static void solve_explicit(struct exchange *e, const struct discs *d, size_t i, 
   double now[3], r[3];
   exchange_force(&e->gathered[i], d->vx[i], d->vy[i], d->omega[i], now);
   for (int k = 0; k < 3; k++) {
-    double *last = &e->last[3 * i + (size_t)k];
-    r[k] = e->has_last ? 0.5 * (now[k] + *last) : now[k];
+    double *last = &e->last_exchange[3 * i + (size_t)k];
+    r[k] = e->has_last_exchange ? 0.5 * (now[k] + *last) : now[k];
     *last = now[k];
   }
   r[0] += weight[0];
@@ -201,7 +248,7 @@ static void solve_explicit(struct exchange *e, const struct discs *d, size_t i, 
   e->response[i].domega = dv[2];
 }
 
-/* Why A of a disc cannot be inverted. */
+/* The reason why A of a disc cannot be inverted. */
 static void say_why(const struct exchange *e, const struct discs *d, size_t i, int64_t step, struct status *status)
 {
   const double coupled = e->gathered[i].m0;
@@ -238,8 +285,66 @@ bool stage_exchange(struct exchange *e, const struct sweep_constants *constants,
   }
 #pragma omp single
   {
-    e->has_last = true;
+    e->has_last_exchange = true;
     team_decide(team, &e->leave_unsolved);
   }
   return !e->leave_unsolved;
+}
+
+/* The velocity by which the surface stays behind the disc in an impact, (1 - s) K (J - C). Updates C. */
+static void surface_lag(struct exchange *e, size_t i, const double impulse[3], double lag[3])
+{
+  double *mean = &e->mean_contact[3 * i], impact[3];
+  for (int k = 0; k < 3; k++) impact[k] = impulse[k] - mean[k];
+  response_to(&e->response[i], impact, lag);
+  for (int k = 0; k < 3; k++) {
+    lag[k] *= 1 - e->response[i].impact_fraction;
+    mean[k] += impact[k] / mean_contact_time;
+  }
+}
+
+/* Moves what the virtual mass withholds in this step, or returns, from the force to the deferred momentum. */
+static void defer(struct exchange *e, const struct discs *d, size_t i, const double dv[3], double force[3])
+{
+  const struct virtual_mass added = virtual_mass_of(e, d, i);
+  const double mass[3] = {added.mass, added.mass, added.inertia};
+  for (int k = 0; k < 3 && added.time > 0; k++) {
+    double *p = &e->deferred[3 * i + (size_t)k];
+    const double change = mass[k] * dv[k] - *p / added.time;
+    force[k] -= change;
+    *p += change;
+  }
+}
+
+void exchange_finish(struct exchange *e, struct discs *d, size_t i)
+{
+  const bool implicit = e->solve == SOLVE_IMPLICIT;
+  const struct response *r = &e->response[i];
+  const double impulse[3] = {d->contact_fx[i], d->contact_fy[i], d->contact_torque[i]};
+  double dv[3], lag[3] = {0}, force[3];
+  response_to(r, impulse, dv);
+  dv[0] += r->dvx;
+  dv[1] += r->dvy;
+  dv[2] += r->domega;
+  struct surface_velocity *surface = &e->surface[i];
+  *surface = (struct surface_velocity){d->vx[i], d->vy[i], d->omega[i]};
+  d->vx[i] += dv[0];
+  d->vy[i] += dv[1];
+  d->omega[i] += dv[2];
+  if (implicit) {
+    surface_lag(e, i, impulse, lag);
+    *surface = (struct surface_velocity){d->vx[i] - lag[0], d->vy[i] - lag[1], d->omega[i] - lag[2]};
+  }
+  exchange_force(&e->gathered[i], surface->vx, surface->vy, surface->omega, force);
+  defer(e, d, i, dv, force);
+  d->fx[i] = force[0] + (implicit ? d->fluid_mass[i] * dv[0] : 0);
+  d->fy[i] = force[1] + (implicit ? d->fluid_mass[i] * dv[1] : 0);
+  d->torque[i] = force[2] + (implicit ? d->fluid_inertia[i] * dv[2] : 0);
+}
+
+void exchange_add_momentum(const struct exchange *e, const struct discs *d, size_t i, double momentum[2])
+{
+  const double mass = d->mass[i] - d->fluid_mass[i];
+  momentum[0] += mass * d->vx[i] + (e->deferred ? e->deferred[3 * i] : 0);
+  momentum[1] += mass * d->vy[i] + (e->deferred ? e->deferred[3 * i + 1] : 0);
 }

@@ -12,49 +12,15 @@ static double into_box(const struct scene *scene, int axis, double at)
   return at >= size ? at - size : at;
 }
 
-/* The force that holds a light disc goes over to p, the momentum that it holds. */
-static void release(struct exchange *e, const struct discs *d, size_t i, const double dv[3], double force[3])
+/* New velocity and place. */
+static void move_disc(const struct contacts *c, struct exchange *e, struct discs *d, size_t i)
 {
-  const struct held held = exchange_held(e, d, i);
-  const double mass[3] = {held.mass, held.mass, held.inertia};
-  for (int k = 0; k < 3 && held.time > 0; k++) {
-    double *p = &e->memory[3 * i + (size_t)k];
-    const double change = mass[k] * dv[k] - *p / held.time;
-    force[k] -= change;
-    *p += change;
-  }
-}
-
-/* New velocity, the forces that made it, new place. */
-static void finish_disc(const struct contacts *c, struct exchange *e, struct discs *d, size_t i)
-{
-  const struct response *r = &e->response[i];
-  const struct wrench impulse = {d->contact_fx[i], d->contact_fy[i], d->contact_torque[i]};
-  double kick[3], hidden[3] = {0, 0, 0};
-  response_to(r, (const double[3]){impulse.fx, impulse.fy, impulse.torque}, kick);
-  const double dvx = r->dvx + kick[0], dvy = r->dvy + kick[1], domega = r->domega + kick[2];
-  const struct surface_velocity old = {d->vx[i], d->vy[i], d->omega[i]};
-  const struct surface_velocity new = {old.vx + dvx, old.vy + dvy, old.omega + domega};
-  const bool implicit = e->solve == SOLVE_IMPLICIT;
-  if (implicit) exchange_hide(e, i, &impulse, hidden);
-  e->surface[i] =
-      implicit ? (struct surface_velocity){new.vx - hidden[0], new.vy - hidden[1], new.omega - hidden[2]} : old;
-
-  double force[3];
-  exchange_force(&e->gathered[i], e->surface[i].vx, e->surface[i].vy, e->surface[i].omega, force);
-  release(e, d, i, (const double[3]){dvx, dvy, domega}, force);
-  d->fx[i] = force[0] + (implicit ? d->fluid_mass[i] * dvx : 0);
-  d->fy[i] = force[1] + (implicit ? d->fluid_mass[i] * dvy : 0);
-  d->torque[i] = force[2] + (implicit ? d->fluid_inertia[i] * domega : 0);
-
-  d->vx[i] = new.vx;
-  d->vy[i] = new.vy;
-  d->omega[i] = new.omega;
-  d->angle[i] += new.omega;
+  exchange_finish(e, d, i);
+  d->angle[i] += d->omega[i];
   if (d->motion[i] == DISC_FIXED) return;
   const bool followed = c->substeps > 1 && c->is_followed[i];
-  d->x[i] = into_box(c->scene, 0, followed ? c->within.x[i] : d->x[i] + new.vx);
-  d->y[i] = into_box(c->scene, 1, followed ? c->within.y[i] : d->y[i] + new.vy);
+  d->x[i] = into_box(c->scene, 0, followed ? c->within.x[i] : d->x[i] + d->vx[i]);
+  d->y[i] = into_box(c->scene, 1, followed ? c->within.y[i] : d->y[i] + d->vy[i]);
 }
 
 static bool too_fast(const struct discs *d, size_t i)
@@ -94,7 +60,7 @@ bool stage_motion(const struct contacts *c, struct exchange *e, struct discs *d,
   for (size_t i = 0; i < d->count; i++) {
     const double from[2] = {d->x[i], d->y[i]};
     struct status status;
-    finish_disc(c, e, d, i);
+    move_disc(c, e, d, i);
     if (!check_disc(c->scene, d, i, step, from, &status)) team_fail(team, &status);
   }
 #pragma omp single

@@ -1,5 +1,5 @@
-/* Motion: what ends the exchange. Each disc's new velocity from its response and the impulse of its contacts, the forces
- * that made it, and its new place: x' = x + V', or where sub-steps have brought it. */
+/* Motion: the end of the exchange of each disc (exchange.h), and the disc's new place: x' = x + V', or in sub-steps the one
+ * that they reach. */
 #ifndef DELBM_SIM_MOTION_H
 #define DELBM_SIM_MOTION_H
 

@@ -32,20 +32,13 @@ struct simulation {
   bool torn; /* a block was left unfinished: rows are at different steps, and no sum over them means anything */
 };
 
-/* Momentum that the coupling conserves: of all fluid, inside discs too, and (m - m_f) V of each disc. */
+/* Momentum that the coupling conserves, of all fluid and discs. */
 static void conserved_momentum(struct simulation *s, double momentum[2])
 {
   const struct fluid_totals fluid = diagnostics_totals(&s->flow.populations);
   momentum[0] = fluid.jx;
   momentum[1] = fluid.jy;
-  for (size_t i = 0; i < s->discs.count; i++) {
-    const double mass = s->discs.mass[i] - s->discs.fluid_mass[i];
-    momentum[0] += mass * s->discs.vx[i];
-    momentum[1] += mass * s->discs.vy[i];
-    if (!s->exchange.memory) continue;
-    momentum[0] += s->exchange.memory[3 * i];
-    momentum[1] += s->exchange.memory[3 * i + 1];
-  }
+  for (size_t i = 0; i < s->discs.count; i++) exchange_add_momentum(&s->exchange, &s->discs, i, momentum);
 }
 
 static struct occupation *present(struct simulation *s)
