@@ -24,15 +24,16 @@
  * neighbours, and would carry the weight in place of the contact, or be driven ever faster by surfaces that pass each
  * other. In cells that two discs cover, or beside a side, d is at least 0.5. With 0.05 such fluid left within some 10,000
  * steps (R = 10), and surfaces that pass each other drove it at three times their speed; with 0.5 it is no faster than
- * they in the map "fixed disc under a lid". */
+ * they in the map "fixed disc under a lid". Without this rule the tests contacts/of_discs_that_are_put_into_each_other_... and
+ * rest/discs_that_start_in_a_wall_or_in_each_other_... fail. */
 #ifndef DELBM_FLUID_WEIGHT_H
 #define DELBM_FLUID_WEIGHT_H
 
 #include "model/scene.h"
 
-/* B = min(eps t/((1 - eps) + t (rest + part eps)), most). */
+/* B = min(eps t/((1 - eps) + t (rest + part eps)), max). */
 struct weight_law {
-  double t, rest, part, most;
+  double t, rest, part, max;
 };
 
 /* d in the cells of a disc whose rim has this speed. The forms of the paper are as printed, without damping. */
@@ -58,7 +59,7 @@ static inline struct weight_law weight_law(enum coupling_form form, double visco
 static inline double weight_of(struct weight_law law, double eps)
 {
   const double weight = eps * law.t / ((1 - eps) + law.t * (law.rest + law.part * eps));
-  return weight < law.most ? weight : law.most;
+  return weight < law.max ? weight : law.max;
 }
 
 #endif
