@@ -133,7 +133,7 @@ static void check_rates(struct draft *draft)
     return;
   }
   if (!draft_gives(draft, magic) || !draft_knows(draft, magic)) return;
-  double rate = rate_from_magic(draft->magic, viscosity);
+  double rate = rate_from_magic(draft->scene.fluid.magic, viscosity);
   if (rate >= 2) draft_refuse(draft, magic, "a value large enough for the rate q to be below 2");
 }
 

@@ -10,17 +10,18 @@ static const double default_density = 1.0;
 
 static void derive_rates(struct draft *draft)
 {
-  double viscosity = draft->scene.fluid.viscosity;
-  enum collision collision = draft_collision(draft);
+  const double viscosity = draft->scene.fluid.viscosity;
+  const enum collision collision = draft_collision(draft);
   struct rates *rates = &draft->scene.fluid.rates;
+  double *magic = &draft->scene.fluid.magic;
   draft->scene.fluid.collision = collision;
   rates->s_nu = rate_from_viscosity(viscosity);
   if (collision == COLLISION_BGK || collision == COLLISION_TRT) rates->s_e = rates->s_nu;
   const double fast = rates->s_q; /* by default the paper's */
   if (collision == COLLISION_BGK) rates->s_q = rates->s_nu;
-  if (collision == COLLISION_TRT && draft->magic == 0) draft->magic = default_magic;
-  if (collision == COLLISION_ADAPTIVE && draft->magic == 0) draft->magic = adaptive_magic;
-  if (draft->magic > 0) rates->s_q = rate_from_magic(draft->magic, viscosity);
+  if (collision == COLLISION_TRT && *magic == 0) *magic = default_magic;
+  if (collision == COLLISION_ADAPTIVE && *magic == 0) *magic = adaptive_magic;
+  if (*magic > 0) rates->s_q = rate_from_magic(*magic, viscosity);
   if (collision == COLLISION_ADAPTIVE && rates->s_q < fast) rates->s_q_fast = fast;
 }
 

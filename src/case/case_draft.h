@@ -22,7 +22,6 @@ struct draft {
   const char *title;        /* these two lie in the tree */
   const char *kernel;       /* NULL: auto */
   int pattern;              /* the one there is */
-  double magic;             /* 0: not given */
   double lattice_viscosity; /* units.viscosity; 0: not given */
   double density;           /* particles.density; 0: not given */
   double size_as_given[2];  /* domain.size before it was rounded to whole cells; 0: it was not */

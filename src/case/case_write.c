@@ -8,41 +8,10 @@
 #include <string.h>
 #include <zlib.h>
 
-/* The magic value from which rate_from_magic gives exactly this rate, as short as it can be written. The rate falls
- * with the value, also in floating point, so bisection finds one if there is any. */
-static double magic_from_rate(double rate, double viscosity)
-{
-  double low = 0, high = 10, magic = (1 / rate - 0.5) * (3 * viscosity);
-  for (int digits = 1; digits <= 17; digits++) {
-    char text[32];
-    snprintf(text, sizeof text, "%.*g", digits, magic);
-    const double rounded = strtod(text, NULL);
-    if (rate_from_magic(rounded, viscosity) == rate) return rounded;
-  }
-  while (rate_from_magic(magic, viscosity) != rate) {
-    if (rate_from_magic(magic, viscosity) > rate)
-      low = magic;
-    else
-      high = magic;
-    double middle = low + (high - low) / 2;
-    if (middle == low || middle == high) break;
-    magic = middle;
-  }
-  return magic;
-}
-
-/* True where the rate q is written as the magic value that it follows from. */
-static bool has_magic(const struct scene *scene)
-{
-  return scene->fluid.collision == COLLISION_TRT || scene->fluid.collision == COLLISION_ADAPTIVE;
-}
-
 /* A draft with the values of a scene, whose texts and discs it shares. */
 static struct draft draft_from_scene(const struct scene *scene)
 {
-  struct draft draft = {.scene = *scene, .title = scene->title ? scene->title : "", .kernel = scene->fluid.kernel};
-  if (has_magic(scene)) draft.magic = magic_from_rate(scene->fluid.rates.s_q, scene->fluid.viscosity);
-  return draft;
+  return (struct draft){.scene = *scene, .title = scene->title ? scene->title : "", .kernel = scene->fluid.kernel};
 }
 
 /* True for keys that say nothing in this scene, or what another key already says. */
@@ -52,7 +21,7 @@ static bool is_idle(const struct key *key, const struct scene *scene)
   if (strcmp(key->path, "units.density") == 0) return scene->units.density == 0;
   if (key_within(key->path, "units")) return scene->units.dx == 0;
   if (strcmp(key->path, "fluid.rates.magic") == 0) return true;
-  if (strcmp(key->path, "fluid.magic") == 0) return !has_magic(scene);
+  if (strcmp(key->path, "fluid.magic") == 0) return scene->fluid.magic == 0 || scene->fluid.collision == COLLISION_MRT;
   if (strcmp(key->path, "fluid.rates.q") == 0) return scene->fluid.collision != COLLISION_MRT;
   if (strcmp(key->path, "fluid.rates.e") == 0)
     return scene->fluid.collision != COLLISION_MRT && scene->fluid.collision != COLLISION_ADAPTIVE;

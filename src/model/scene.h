@@ -86,6 +86,7 @@ struct scene {
     double force[2]; /* per unit mass */
     enum collision collision;
     struct rates rates;
+    double magic; /* trt, adaptive: the parameter that s_q follows from; 0: rates as they are */
     enum precision precision;
     bool zero_flux;
     char *kernel; /* forced kernel variant, or NULL for the best that the machine runs */
