@@ -3,7 +3,6 @@
 #include "accuracy.h"
 
 #include "contact/law.h"
-#include "solid/lens.h"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_odeiv2.h>
@@ -12,25 +11,26 @@
 static const double heavy = 1e6, radius = 10, speed = 0.01;
 enum { BOX = 64, PHASES = 4 };
 
-struct spring {
+struct impactor {
   struct contact_law law;
   double mass; /* reduced */
 };
 
 static int spring_rate(double time, const double state[], double rate[], void *context)
 {
-  const struct spring *s = context;
-  const double area = state[0] > 0 ? lens_of_discs(radius, radius, 2 * radius - state[0]).area : 0;
+  const struct impactor *s = context;
+  const double spring = contact_spring_at(&s->law, (const double[2]){radius, radius}, state[0]).force;
+  const double force = fmax(0, spring + contact_damping(&s->law, 1 / s->mass) * state[1]);
   (void)time;
   rate[0] = state[1];
-  rate[1] = -contact_force(&s->law, area, state[1], contact_damping(&s->law, 1 / s->mass)) / s->mass;
+  rate[1] = state[0] > 0 ? -force / s->mass : 0;
   return GSL_SUCCESS;
 }
 
 /* Of a contact that lasts about `duration` steps; NAN if GSL fails. */
-static double exact_restitution(struct spring *spring, double duration)
+static double exact_restitution(struct impactor *impactor, double duration)
 {
-  gsl_odeiv2_system system = {spring_rate, NULL, 2, spring};
+  gsl_odeiv2_system system = {spring_rate, NULL, 2, impactor};
   gsl_odeiv2_driver *driver =
       gsl_odeiv2_driver_alloc_y_new(&system, gsl_odeiv2_step_rk8pd, duration / 1e3, 1e-12, 1e-10);
   double state[2] = {1e-12, speed}, time = 0;
@@ -89,7 +89,7 @@ static bool run_impact(void *context, const struct accuracy_choice *choice, int 
   (void)context;
   for (int k = 0; ok && k < PHASES; k++) {
     struct scene scene = impact(choice, duration, 1.3 + k * speed / PHASES);
-    struct spring spring = {contact_law_of(&scene), heavy * M_PI * radius * radius / 2};
+    struct impactor spring = {contact_law_of(&scene), heavy * M_PI * radius * radius / 2};
     double restitution = NAN;
     ok = meet(&scene, duration, &restitution, outcome, status);
     outcome->error = fmax(outcome->error, fabs(restitution - exact_restitution(&spring, duration)));

@@ -1,10 +1,12 @@
-/* What finding contacts costs (the paper's Fig. 6): by the grid on top of the occupation update that it reuses, by linked
- * cells of 200 x 200, and by linked cells of one diameter; how the overlap areas by `cells` and `lens` compare; and the
- * whole contact stage in a run. Discs stand on a jittered grid, some of them touching, and creep: every step paints all
- * bands anew. Each search's pairs are held against those of all pairs. */
+/* What finding contacts costs (the paper's Fig. 6): a list of neighbours that is built from the grid that occupation paints, from linked
+ * cells of 200 x 200, and from linked cells of one diameter; a step's part of it, and one building of the list; how the overlap areas by
+ * `cells` and `lens` compare; and the whole contact stage in a run. Discs stand on a jittered grid, some of them touching, and creep by
+ * up to 0.02 cells a step, about as fast as discs settle, so that the list is built anew every 20 to 30 steps. Each search's pairs are
+ * held against those of all pairs. */
 #include "base/clock.h"
 #include "bench.h"
-#include "contact/linked_cell.h"
+#include "contact/cells_area.h"
+#include "contact/pairs.h"
 #include "scenes.h"
 #include "sim/simulation.h"
 #include "sim/stages.h"
@@ -17,40 +19,40 @@
 #include <omp.h>
 #include <stdlib.h>
 
-enum { STEPS = 100 }; /* the paper's */
+enum { STEPS = 100, BUILDS = 5 }; /* steps: the paper's */
 
-/* What is timed: occupation alone, and with each kind of search. */
-enum way { PAINT, GRID, GRID_AREAS, COARSE, TUNED, WAY_COUNT };
+enum search { GRID, COARSE, TUNED, SEARCH_COUNT };
 
 struct crowd {
   struct scene scene;
   struct discs discs;
-  int reach;
-  struct occupation occupations[3]; /* of PAINT, GRID and GRID_AREAS */
-  struct linked_cell linked[2];     /* of COARSE and TUNED */
-  struct pair_list pairs[WAY_COUNT];
-  double *vx, *vy;
+  double near; /* gap below which pairs are wanted */
+  struct occupation occupation;
+  struct pair_list pairs[SEARCH_COUNT];
+  double *vx, *vy, *scratch;
 };
 
 struct figures {
-  double ms[WAY_COUNT]; /* medians; of the grid what it adds to PAINT: the difference, not below 0, and the join */
+  double occupation_ms;          /* median */
+  double step_ms[SEARCH_COUNT];  /* mean over the steps, buildings of the list included */
+  double build_ms[SEARCH_COUNT]; /* median of one building */
   size_t pairs, shared_cells;
-  double lens_ms, area_error; /* closed form of all pairs; r.m.s. of the difference by cells over the mean area */
+  double cells_ms, lens_ms, area_error; /* areas of all pairs; r.m.s. of the difference by cells over the mean area */
 };
 
 static bool allocate(struct crowd *c, struct status *status)
 {
-  static const enum pair_search searches[] = {PAIRS_NONE, PAIRS_ONCE, PAIRS_WITH_AREA};
-  static const double edges[] = {200, 0};
-  for (int k = 0; k < 3; k++) {
-    if (!occupation_create(&c->occupations[k], &c->scene, &c->discs, c->reach, status)) return false;
-    c->occupations[k].search = searches[k];
+  static const double edges[SEARCH_COUNT] = {0, 200, 0};
+  if (!occupation_create(&c->occupation, &c->scene, &c->discs, status)) return false;
+  for (enum search k = 0; k < SEARCH_COUNT; k++) {
+    c->scene.contact.search = k == GRID ? SEARCH_GRID : SEARCH_LINKED_CELL;
+    c->scene.contact.edge = edges[k];
+    if (!pairs_create(&c->pairs[k], &c->scene, &c->discs, c->near, status)) return false;
   }
-  for (int k = 0; k < 2; k++)
-    if (!linked_cell_create(&c->linked[k], &c->scene, &c->discs, edges[k], c->reach, status)) return false;
-  for (int way = GRID; way < WAY_COUNT; way++)
-    if (!overlap_create(&c->pairs[way], c->discs.count, status)) return false;
-  return true;
+  c->vx = calloc(c->discs.count, sizeof *c->vx);
+  c->vy = calloc(c->discs.count, sizeof *c->vy);
+  c->scratch = calloc(cells_area_scratch(&c->discs), sizeof *c->scratch);
+  return (c->vx && c->vy && c->scratch) || status_fail(status, DELBM_FAILED, "bench contact: no memory");
 }
 
 /* n x n discs, each on its own square of the box. */
@@ -59,12 +61,11 @@ static bool crowd_create(struct crowd *c, int n, double radius, int size, struct
   const double spacing = (double)size / n;
   gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
   *c = (struct crowd){.scene = scene_crowd(size, size, radius, spacing, spacing / 2 - radius + 0.2)};
-  c->reach = stages_of(&c->scene).reach;
-  const bool ok = discs_create(&c->discs, &c->scene, status) && allocate(c, status) &&
-                  (c->vx = calloc(c->discs.count, sizeof *c->vx)) && (c->vy = calloc(c->discs.count, sizeof *c->vy));
+  c->near = stages_of(&c->scene).substeps ? 1 : 0;
+  const bool ok = discs_create(&c->discs, &c->scene, status) && allocate(c, status);
   for (size_t i = 0; ok && i < c->discs.count; i++) {
-    c->vx[i] = gsl_ran_flat(random, -0.002, 0.002);
-    c->vy[i] = gsl_ran_flat(random, -0.002, 0.002);
+    c->vx[i] = gsl_ran_flat(random, -0.02, 0.02);
+    c->vy[i] = gsl_ran_flat(random, -0.02, 0.02);
   }
   gsl_rng_free(random);
   return ok;
@@ -72,34 +73,31 @@ static bool crowd_create(struct crowd *c, int n, double radius, int size, struct
 
 static void crowd_destroy(struct crowd *c)
 {
-  for (int k = 0; k < 3; k++) occupation_destroy(&c->occupations[k]);
-  for (int k = 0; k < 2; k++) linked_cell_destroy(&c->linked[k]);
-  for (int way = GRID; way < WAY_COUNT; way++) overlap_destroy(&c->pairs[way]);
+  occupation_destroy(&c->occupation);
+  for (enum search k = 0; k < SEARCH_COUNT; k++) pairs_destroy(&c->pairs[k]);
   discs_destroy(&c->discs);
   scene_clear(&c->scene);
   free(c->vx);
   free(c->vy);
+  free(c->scratch);
 }
 
-/* Milliseconds of the search, and of those that joined what bands have found. */
-static bool search(struct crowd *c, enum way way, double *ms, double *join_ms, struct status *status)
+/* Milliseconds of the occupation, and of bringing each list up to date. */
+static bool search_all(struct crowd *c, double *occupation_ms, double ms[SEARCH_COUNT], struct status *status)
 {
   struct team team = {0};
-  const double start = clock_now();
+  double since = clock_now();
 #pragma omp parallel
-  if (way < COARSE)
-    stage_occupation(&c->occupations[way], &c->discs, &team);
-  else
-    linked_cell_find(&c->linked[way - COARSE], &c->discs, &c->pairs[way], &team);
+  stage_occupation(&c->occupation, &c->discs, &team);
+  *occupation_ms = 1e3 * (clock_now() - since);
+  for (enum search k = 0; k < SEARCH_COUNT && !team.failed; k++) {
+    since = clock_now();
+#pragma omp parallel
+    pairs_update(&c->pairs[k], &c->occupation, &c->discs, &team);
+    ms[k] = 1e3 * (clock_now() - since);
+  }
   if (team.failed) *status = team.first;
-  const double found = clock_now();
-  *ms = 1e3 * (found - start);
-  *join_ms = 0;
-  if (team.failed || way == PAINT || way >= COARSE) return !team.failed;
-  const struct occupation *o = &c->occupations[way];
-  const bool ok = overlap_join(&c->pairs[way], o->batches, (size_t)o->band_count, o->discs, status);
-  *join_ms = 1e3 * (clock_now() - found);
-  return ok;
+  return !team.failed;
 }
 
 /* Gap between two discs of a closed box. */
@@ -109,44 +107,50 @@ static double gap(const struct discs *d, size_t a, size_t b)
   return sqrt(dx * dx + dy * dy) - d->radius[a] - d->radius[b];
 }
 
-/* Whether a list holds all the pairs within reach, which `count` counts. Candidates beyond it may stand among them. */
-static bool verify(const struct crowd *c, enum way way, size_t count, struct status *status)
-{
-  size_t found = 0;
-  for (size_t p = 0; p < c->pairs[way].count; p++)
-    found += gap(&c->discs, c->pairs[way].pairs[p].a, c->pairs[way].pairs[p].b) < c->reach;
-  return found == count ||
-         status_fail(status, DELBM_FAILED, "bench contact: search %d found %zu of %zu pairs", way, found, count);
-}
-
+/* Whether each list holds all pairs that are wanted, which `count` counts. */
 static bool verify_all(const struct crowd *c, size_t *count, struct status *status)
 {
   *count = 0;
   for (size_t a = 0; a < c->discs.count; a++)
-    for (size_t b = a + 1; b < c->discs.count; b++) *count += gap(&c->discs, a, b) < c->reach;
-  for (int way = GRID; way < WAY_COUNT; way++)
-    if (!verify(c, way, *count, status)) return false;
+    for (size_t b = a + 1; b < c->discs.count; b++) *count += gap(&c->discs, a, b) < c->near;
+  for (enum search k = 0; k < SEARCH_COUNT; k++) {
+    size_t found = 0;
+    for (size_t p = 0; p < c->pairs[k].count; p++)
+      found += gap(&c->discs, c->pairs[k].pairs[p].a, c->pairs[k].pairs[p].b) < c->near;
+    if (found != *count)
+      return status_fail(status, DELBM_FAILED, "bench contact: search %d found %zu of %zu pairs", k, found, *count);
+  }
   return true;
 }
 
-/* The closed form of all pairs that the grid has found, timed, against their areas by cells. */
-static void compare_areas(const struct crowd *c, struct figures *f)
+/* Areas of all pairs that touch, by cells and in closed form, timed. */
+static bool compare_areas(struct crowd *c, struct figures *f, struct status *status)
 {
-  const struct pair_list *list = &c->pairs[GRID_AREAS];
-  double sum = 0, squares = 0;
+  const struct pair_list *list = &c->pairs[GRID];
+  double *by_cells = calloc(list->count + 1, sizeof *by_cells), sum = 0, squares = 0;
   size_t touching = 0;
-  const double start = clock_now();
+  if (!by_cells) return status_fail(status, DELBM_FAILED, "bench contact: no memory");
+  double since = clock_now();
   for (size_t p = 0; p < list->count; p++) {
-    const struct near_pair *pair = &list->pairs[p];
+    const struct pair *pair = &list->pairs[p];
+    if (gap(&c->discs, pair->a, pair->b) < cells_area_gap)
+      by_cells[p] = cells_area(&c->scene, &c->discs, pair->a, pair->b, c->scratch);
+  }
+  f->cells_ms = 1e3 * (clock_now() - since);
+  since = clock_now();
+  for (size_t p = 0; p < list->count; p++) {
+    const struct pair *pair = &list->pairs[p];
     const double ra = c->discs.radius[pair->a], rb = c->discs.radius[pair->b];
     const double area = lens_of_discs(ra, rb, gap(&c->discs, pair->a, pair->b) + ra + rb).area;
     if (area <= 0) continue;
     touching++;
     sum += area;
-    squares += (pair->cells_area - area) * (pair->cells_area - area);
+    squares += (by_cells[p] - area) * (by_cells[p] - area);
   }
-  f->lens_ms = 1e3 * (clock_now() - start);
+  f->lens_ms = 1e3 * (clock_now() - since);
   f->area_error = touching ? sqrt(squares / (double)touching) / (sum / (double)touching) : 0;
+  free(by_cells);
+  return true;
 }
 
 static void creep(struct crowd *c)
@@ -157,46 +161,58 @@ static void creep(struct crowd *c)
   }
 }
 
+/* One building of each list, as the median of some. */
+static bool measure_builds(struct crowd *c, struct figures *f, struct status *status)
+{
+  double ms[BUILDS][SEARCH_COUNT], one[BUILDS], occupation;
+  for (int n = 0; n < BUILDS; n++) {
+    for (enum search k = 0; k < SEARCH_COUNT; k++) c->pairs[k].stale = true;
+    if (!search_all(c, &occupation, ms[n], status)) return false;
+  }
+  for (enum search k = 0; k < SEARCH_COUNT; k++) {
+    for (int n = 0; n < BUILDS; n++) one[n] = ms[n][k];
+    f->build_ms[k] = gsl_stats_median(one, 1, BUILDS);
+  }
+  return true;
+}
+
 static bool measure(struct crowd *c, int steps, struct figures *f, struct status *status)
 {
-  double ms[WAY_COUNT][STEPS], join[WAY_COUNT][STEPS];
+  double ms[SEARCH_COUNT], occupation[STEPS];
+  *f = (struct figures){0};
   for (int step = -2; step < steps; step++) {
     creep(c);
-    for (int way = 0; way < WAY_COUNT; way++)
-      if (!search(c, way, &ms[way][step < 0 ? 0 : step], &join[way][step < 0 ? 0 : step], status)) return false;
+    if (!search_all(c, &occupation[step < 0 ? 0 : step], ms, status)) return false;
+    for (enum search k = 0; k < SEARCH_COUNT && step >= 0; k++) f->step_ms[k] += ms[k] / steps;
   }
-  for (int way = GRID; way <= GRID_AREAS; way++)
-    for (int step = 0; step < steps; step++) ms[way][step] -= ms[PAINT][step];
-  for (int way = 0; way < WAY_COUNT; way++)
-    f->ms[way] = fmax(0, gsl_stats_median(ms[way], 1, (size_t)steps)) + gsl_stats_median(join[way], 1, (size_t)steps);
-  f->shared_cells = 0;
-  for (int k = 0; k < c->occupations[GRID].band_count; k++)
-    f->shared_cells += c->occupations[GRID].bands[k].shared_cells;
-  compare_areas(c, f);
-  return verify_all(c, &f->pairs, status);
+  f->occupation_ms = gsl_stats_median(occupation, 1, (size_t)steps);
+  for (int k = 0; k < c->occupation.band_count; k++) f->shared_cells += c->occupation.bands[k].shared_cells;
+  return compare_areas(c, f, status) && verify_all(c, &f->pairs, status) && measure_builds(c, f, status);
 }
 
 static bool bench_searches(int n, double radius, int size, const struct bench_report *report, struct status *status)
 {
   struct crowd crowd;
-  struct figures f = {0};
+  struct figures f;
   const bool packed = size <= 2 * radius * n;
   const bool ok =
       crowd_create(&crowd, n, radius, size, status) && measure(&crowd, report->quick ? 5 : STEPS, &f, status);
   if (ok) {
-    printf("%6g %7zu %6d %8s %7zu %8zu %9.4f %8.4f %8.4f %9.4f %8.4f %8.4f %8.3f\n", radius, crowd.discs.count, size,
-           packed ? "packed" : "dilute", f.pairs, f.shared_cells, f.ms[PAINT], f.ms[GRID], f.ms[GRID_AREAS],
-           f.ms[COARSE], f.ms[TUNED], f.lens_ms, f.area_error);
+    printf("%6g %7zu %6d %8s %7zu %8zu %9.4f %8.4f %8.4f %9.4f %9.4f %8.4f %8.4f %8.4f %8.4f %8.3f\n", radius,
+           crowd.discs.count, size, packed ? "packed" : "dilute", f.pairs, f.shared_cells, f.occupation_ms,
+           f.step_ms[GRID], f.build_ms[GRID], f.step_ms[COARSE], f.build_ms[COARSE], f.step_ms[TUNED],
+           f.build_ms[TUNED], f.cells_ms, f.lens_ms, f.area_error);
     fflush(stdout);
     if (report->json)
       fprintf(
           report->json,
           "%s\n    {\"n\": %zu, \"radius\": %g, \"size\": %d, \"packed\": %d, \"pairs\": %zu, \"shared_cells\": %zu, "
-          "\"occupation_ms\": %.6g, \"grid_ms\": %.6g, \"grid_areas_ms\": %.6g, \"linked200_ms\": %.6g, "
-          "\"linked_tuned_ms\": %.6g, \"lens_ms\": %.6g, \"cells_error\": %.6g}",
+          "\"occupation_ms\": %.6g, \"grid_ms\": %.6g, \"grid_build_ms\": %.6g, \"linked200_ms\": %.6g, "
+          "\"linked200_build_ms\": %.6g, \"linked_tuned_ms\": %.6g, \"linked_tuned_build_ms\": %.6g, "
+          "\"cells_ms\": %.6g, \"lens_ms\": %.6g, \"cells_error\": %.6g}",
           crowd.discs.count == 100 && radius < 3 ? "" : ",", crowd.discs.count, radius, size, packed, f.pairs,
-          f.shared_cells, f.ms[PAINT], f.ms[GRID], f.ms[GRID_AREAS], f.ms[COARSE], f.ms[TUNED], f.lens_ms,
-          f.area_error);
+          f.shared_cells, f.occupation_ms, f.step_ms[GRID], f.build_ms[GRID], f.step_ms[COARSE], f.build_ms[COARSE],
+          f.step_ms[TUNED], f.build_ms[TUNED], f.cells_ms, f.lens_ms, f.area_error);
   }
   crowd_destroy(&crowd);
   return ok;
@@ -233,10 +249,11 @@ static bool all_searches(const struct bench_report *report, struct status *statu
   static const int edge[] = {10, 15, 20, 30, 40, 50};
   static const double radii[] = {2, 5};
   bool ok = true;
-  printf("ms a step of finding pairs, %d threads: the grid's on top of occupation; areas of all pairs\n",
-         omp_get_max_threads());
-  printf("%6s %7s %6s %8s %7s %8s %9s %8s %8s %9s %8s %8s %8s\n", "R", "discs", "box", "", "pairs", "shared",
-         "occupat.", "grid", "+areas", "200x200", "tuned", "lens", "error");
+  printf(
+      "ms of finding pairs, %d threads: a step's part, and one building of the list; areas of all pairs that touch\n",
+      omp_get_max_threads());
+  printf("%6s %7s %6s %8s %7s %8s %9s %8s %8s %9s %9s %8s %8s %8s %8s %8s\n", "R", "discs", "box", "", "pairs",
+         "shared", "occupat.", "grid", "build", "200x200", "build", "tuned", "build", "cells", "lens", "error");
   for (int r = 0; ok && r < 2; r++) {
     for (int k = 0; ok && k < 6; k++) ok = bench_searches(edge[k], radii[r], 1000, report, status);
     ok = ok && bench_searches(100, radii[r], (int)(400 * radii[r]), report, status) &&

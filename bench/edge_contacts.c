@@ -98,7 +98,7 @@ static bool map_stiffness(struct edge *edge, enum contact_area area, double damp
   static const int substeps[] = {0, 1, 4, 16, 64, 256};
   enum { COLUMNS = sizeof substeps / sizeof substeps[0] };
   const bool quick = edge->report->quick;
-  const int columns = quick ? 1 : COLUMNS;
+  const int columns = quick || area == AREA_CELLS ? 1 : COLUMNS; /* areas by cells take one */
   struct impact impacts[ROWS * COLUMNS];
   char labels[ROWS][MAP_LABEL], what[64];
   struct map map = {.corner = "stiffness/sub-steps", .columns = columns};

@@ -1,7 +1,7 @@
 /* What it costs to know which cells a disc covers, and how much of them: cell by cell, each area by itself; by line
  * tables (PHYSICS: one arcsine per grid line, each corner used by four cells) over every cell that the disc touches; and
  * as the program does it, where cells within a wide disc are covered without being evaluated: what the paper's modified
- * Verlet list is for. Then the whole stage, in which runs, shares and pairs follow from the areas: with all discs
+ * Verlet list is for. Then the whole stage, in which runs and shares follow from the areas: with all discs
  * moving, and with none, when bands are left as they are. */
 #include "solid/occupation.h"
 #include "base/clock.h"
@@ -136,7 +136,7 @@ static bool verify_stage(const struct occupation *o, const struct scene *scene, 
 {
   struct occupation fresh = {0};
   struct team team = {0};
-  bool ok = occupation_create(&fresh, scene, d, 0, status);
+  bool ok = occupation_create(&fresh, scene, d, status);
   if (ok) stage_occupation(&fresh, d, &team);
   if (team.failed) *status = team.first;
   ok = ok && !team.failed;
@@ -154,7 +154,7 @@ static bool measure_stage(double radius, int size, bool moving, size_t *discs, d
   struct discs d;
   struct occupation o = {0};
   double samples[4 * REPEATS];
-  bool ok = discs_create(&d, &scene, status) && occupation_create(&o, &scene, &d, 0, status);
+  bool ok = discs_create(&d, &scene, status) && occupation_create(&o, &scene, &d, status);
   for (int r = -2; ok && r < 4 * REPEATS; r++) {
     struct team team = {0};
     for (size_t i = 0; moving && i < d.count; i++) d.y[i] -= 0.01;

@@ -1,17 +1,16 @@
 /* The overlap area of two discs against the distance by which they overlap: in closed form for several ratios of radii,
  * with the factor f of A* = f delta*^(3/2) fitted (the paper's Fig. 2 and (11)); and by the cells that both cover, mean
  * and spread over places on the grid, beside the closed form (its Fig. 5). */
-#include "contact/overlap.h"
-#include "base/team.h"
 #include "bench.h"
+#include "contact/cells_area.h"
 #include "scenes.h"
 #include "solid/lens.h"
-#include "solid/occupation.h"
 
 #include <gsl/gsl_fit.h>
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
 #include <math.h>
+#include <stdlib.h>
 
 enum { POINTS = 50 };
 static const double radius = 10; /* of the areas by cells */
@@ -91,32 +90,29 @@ static bool report_ratios(const struct bench_report *report, struct status *stat
 struct by_cells {
   struct scene scene;
   struct discs discs;
-  struct occupation occupation;
-  struct pair_list pairs;
+  double *scratch;
   gsl_rng *random;
 };
 
 static bool by_cells_create(struct by_cells *c, struct status *status)
 {
   *c = (struct by_cells){.scene = scene_box(64, 64, 0.05, SIDES_PERIODIC), .random = gsl_rng_alloc(gsl_rng_mt19937)};
-  c->scene.contact.area = AREA_CELLS;
   for (int k = 0; k < 2; k++) scene_add_disc(&c->scene, radius, 2, 32, 32);
-  return discs_create(&c->discs, &c->scene, status) &&
-         occupation_create(&c->occupation, &c->scene, &c->discs, 0, status) && overlap_create(&c->pairs, 2, status);
+  if (!discs_create(&c->discs, &c->scene, status)) return false;
+  c->scratch = calloc(cells_area_scratch(&c->discs), sizeof *c->scratch);
+  return c->scratch || status_fail(status, DELBM_FAILED, "bench overlap: no memory");
 }
 
 static void by_cells_destroy(struct by_cells *c)
 {
   gsl_rng_free(c->random);
-  overlap_destroy(&c->pairs);
-  occupation_destroy(&c->occupation);
+  free(c->scratch);
   discs_destroy(&c->discs);
   scene_clear(&c->scene);
 }
 
-static bool measure_cells(struct by_cells *c, double overlap, int places, double mean[2], struct status *status)
+static void measure_cells(struct by_cells *c, double overlap, int places, double mean[2])
 {
-  struct team team = {0};
   double sum = 0, squares = 0;
   for (int n = 0; n < places; n++) {
     const double angle = gsl_ran_flat(c->random, 0, 2 * M_PI), d = 2 * radius - overlap;
@@ -124,17 +120,12 @@ static bool measure_cells(struct by_cells *c, double overlap, int places, double
     c->discs.y[0] = gsl_ran_flat(c->random, 31, 32);
     c->discs.x[1] = c->discs.x[0] + d * cos(angle);
     c->discs.y[1] = c->discs.y[0] + d * sin(angle);
-    stage_occupation(&c->occupation, &c->discs, &team);
-    if (team.failed) *status = team.first;
-    if (team.failed || !overlap_join(&c->pairs, c->occupation.batches, (size_t)c->occupation.band_count, 2, status))
-      return false;
-    const double area = c->pairs.count ? c->pairs.pairs[0].cells_area : 0;
+    const double area = cells_area(&c->scene, &c->discs, 0, 1, c->scratch);
     sum += area;
     squares += area * area;
   }
   mean[0] = sum / places;
   mean[1] = sqrt(fmax(0, squares / places - mean[0] * mean[0]));
-  return true;
 }
 
 static bool report_cells(struct by_cells *c, const struct bench_report *report, struct status *status)
@@ -146,7 +137,7 @@ static bool report_cells(struct by_cells *c, const struct bench_report *report, 
   for (int k = -4; k <= 20; k++) {
     const double overlap = 0.1 * k, area = lens_of_discs(radius, radius, 2 * radius - overlap).area;
     double mean[2];
-    if (!measure_cells(c, overlap, places, mean, status)) return false;
+    measure_cells(c, overlap, places, mean);
     printf("%8.1f %12.5f %12.5f %12.5f\n", overlap, area, mean[0], mean[1]);
     if (k > 0 && !(mean[0] > area && mean[0] < area + radius / 4))
       return status_fail(status, DELBM_FAILED, "bench overlap: area by cells %g at an overlap of %g, where %g is exact",

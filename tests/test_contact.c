@@ -1,10 +1,9 @@
 /* Contact: overlap areas, the force law, and whole impacts of discs with discs and walls. */
 #include "case/case_overlaps.h"
+#include "contact/cells_area.h"
 #include "contact/law.h"
-#include "contact/overlap.h"
 #include "drive.h"
 #include "scenes.h"
-#include "sim/contact_memory.h"
 #include "solid/lens.h"
 
 #include <criterion/criterion.h>
@@ -171,28 +170,20 @@ static double mean_cells_area(double overlap, unsigned long seed)
 {
   enum { PLACES = 20000 };
   struct status status;
-  struct team team = {0};
   struct scene scene = scene_box(64, 64, 0.05, SIDES_PERIODIC);
   struct discs discs;
-  struct occupation occupation;
-  struct pair_list pairs;
-  scene.contact.area = AREA_CELLS;
   for (int k = 0; k < 2; k++) scene_add_disc(&scene, 10, 2, 0, 0);
-  cr_assert(discs_create(&discs, &scene, &status) && occupation_create(&occupation, &scene, &discs, 0, &status) &&
-            overlap_create(&pairs, 2, &status));
+  cr_assert(discs_create(&discs, &scene, &status), "%s", status.message);
+  double *scratch = calloc(cells_area_scratch(&discs), sizeof *scratch), sum = 0;
   gsl_rng *random = random_from(seed);
-  double sum = 0;
   for (int n = 0; n < PLACES; n++) {
     const double angle = between(random, 0, 2 * M_PI), d = 20 - overlap;
     discs.x[0] = between(random, 31, 32), discs.y[0] = between(random, 31, 32);
     discs.x[1] = discs.x[0] + d * cos(angle), discs.y[1] = discs.y[0] + d * sin(angle);
-    stage_occupation(&occupation, &discs, &team);
-    cr_assert(!team.failed && overlap_join(&pairs, occupation.batches, (size_t)occupation.band_count, 2, &status));
-    sum += pairs.count ? pairs.pairs[0].cells_area : 0;
+    sum += cells_area(&scene, &discs, 0, 1, scratch);
   }
   gsl_rng_free(random);
-  overlap_destroy(&pairs);
-  occupation_destroy(&occupation);
+  free(scratch);
   discs_destroy(&discs);
   scene_clear(&scene);
   return sum / PLACES;
@@ -207,27 +198,58 @@ Test(overlap, areas_by_cells_are_on_average_those_measured_for_the_paper_s_rule)
   }
 }
 
+static struct contact_law law_of(double stiffness, double alpha, double damping, enum contact_damping form)
+{
+  const struct scene scene = {
+      .contact = {.stiffness = stiffness, .alpha = alpha, .damping = damping, .damping_form = form}};
+  return contact_law_of(&scene);
+}
+
+/* Force of a contact of this overlap area whose spring has stored any amount of energy. */
+static double force_of(const struct contact_law *law, double area, double approach_speed, double damping)
+{
+  struct contact_state state = {.stored = INFINITY};
+  const struct kinematics k = {.lens = {.area = area},
+                               .approach_speed = approach_speed,
+                               .mean_speed = approach_speed,
+                               .compliance = 1,
+                               .damping = damping};
+  return contact_law(law, &state, &k, 1).normal;
+}
+
 Test(law, force_is_never_attractive_and_acts_on_overlap_only)
 {
   const unsigned long seed = 3;
   gsl_rng *random = random_from(seed);
   for (int n = 0; n < 100000; n++) {
     const double k = pow(10, between(random, -3, 6)), inverse_mass = pow(10, between(random, -6, 2));
-    const struct contact_law law = {.stiffness = 0.3 * k, .k = k, .damping = between(random, 0, 2), .form = n % 2};
-    const double area = pow(10, between(random, -12, 3)), closing = between(random, -0.5, 0.5);
-    const double force = contact_force(&law, area, closing, contact_damping(&law, inverse_mass));
+    const struct contact_law law = law_of(k, 0.3, between(random, 0, 2), n % 2);
+    const double area = pow(10, between(random, -12, 3)), approach = between(random, -0.5, 0.5);
+    const double force = force_of(&law, area, approach, contact_damping(&law, inverse_mass));
     cr_expect(force >= 0, "seed %lu: %g", seed, force);
-    cr_expect(closing < 0 || force >= 0.3 * k * area, "seed %lu: damping helps the approach", seed);
-    cr_expect(closing > 0 || force <= 0.3 * k * area, "seed %lu: damping helps the parting", seed);
-    cr_expect_eq(contact_force(&law, 0, closing, contact_damping(&law, inverse_mass)), 0);
+    cr_expect(approach < 0 || force >= law.stiffness * area, "seed %lu: damping helps the approach", seed);
+    cr_expect(approach > 0 || force <= law.stiffness * area, "seed %lu: damping helps the parting", seed);
+    cr_expect_eq(force_of(&law, 0, approach, contact_damping(&law, inverse_mass)), 0);
   }
   gsl_rng_free(random);
+}
+
+/* The spring alone, over sub-steps of any length, through an overlap that comes and goes at speeds that others set. */
+Test(law, impulses_without_stored_energy_return_none)
+{
+  const struct contact_law law = law_of(10, 1, 0, DAMPING_CRITICAL);
+  struct contact_state state = {0};
+  struct kinematics k = {.lens = {.area = 1}, .approach_speed = -0.1, .mean_speed = -0.1, .compliance = 0.5};
+  cr_expect_eq(contact_law(&law, &state, &k, 1).normal, 0, "parting discs that have stored nothing");
+  state = (struct contact_state){.stored = 0.01};
+  const double j = contact_law(&law, &state, &k, 1).normal;
+  cr_expect_float_eq(j * (-0.1 - 0.5 * j / 2), -0.01, 1e-15, "impulse %g returns another energy than is stored", j);
 }
 
 Test(law, damping_is_critical_at_one_or_as_printed)
 {
   const double mi = 3, mj = 5, k = 7, reduced = mi * mj / (mi + mj);
-  struct contact_law law = {.k = k, .damping = 0.34, .form = DAMPING_CRITICAL};
+  struct contact_law law = law_of(k, 1, 0.34, DAMPING_CRITICAL);
   cr_expect_float_eq(contact_damping(&law, 1 / mi + 1 / mj), 2 * 0.34 * sqrt(k * reduced), 1e-14);
   cr_expect_float_eq(contact_damping(&law, 1 / mi), 2 * 0.34 * sqrt(k * mi), 1e-14);
   cr_expect_eq(contact_damping(&law, 0), 0);
@@ -235,13 +257,27 @@ Test(law, damping_is_critical_at_one_or_as_printed)
   cr_expect_float_eq(contact_damping(&law, 1 / mi + 1 / mj), 2 * 0.34 * sqrt(k * (mi + mj) / (mi * mj)), 1e-14);
 }
 
+/* The rate at which the force grows with the overlap sets the sub-steps; its integral is the energy of discs put into each other. */
+Test(law, stiffness_and_energy_are_those_of_the_force)
+{
+  const struct contact_law law = law_of(10, 0.3, 0, DAMPING_CRITICAL);
+  static const double radii[][2] = {{5, 5}, {3, 8}, {5, INFINITY}};
+  for (int n = 0; n < 3; n++)
+    for (double overlap = 1e-4; overlap < 2; overlap *= 3) {
+      const double h = 1e-4 * overlap;
+      const double low = contact_spring_at(&law, radii[n], overlap - h).force;
+      const double high = contact_spring_at(&law, radii[n], overlap + h).force;
+      const double work = contact_energy(&law, radii[n], overlap + h) - contact_energy(&law, radii[n], overlap - h);
+      cr_expect_float_eq((high - low) / (2 * h) / contact_spring_at(&law, radii[n], overlap).stiffness, 1, 1e-5);
+      cr_expect_float_eq(work / (2 * h) / contact_spring_at(&law, radii[n], overlap).force, 1, 1e-5);
+    }
+}
+
 /* A linear spring: the overlap itself as the area. Unclamped, the force may pull. */
 static double spring_acceleration(const struct contact_law *law, double mass, const double state[2], bool clamped)
 {
   const double eta = contact_damping(law, 1 / mass);
-  return -(clamped ? contact_force(law, state[0], state[1], contact_damping(law, 1 / mass))
-                   : law->k * state[0] + eta * state[1]) /
-         mass;
+  return -(clamped ? force_of(law, state[0], state[1], eta) : law->k * state[0] + eta * state[1]) / mass;
 }
 
 /* Restitution of an impact with that spring by fourth-order Runge-Kutta steps, until the overlap ends. */
@@ -274,7 +310,7 @@ Test(law, a_linear_spring_has_the_restitution_of_the_reference)
                                    {0.5, 0.163034, 0.298436},
                                    {0.9, 0.001524, 0.155283}};
   for (size_t k = 0; k < sizeof rows / sizeof rows[0]; k++) {
-    const struct contact_law law = {.stiffness = 4, .k = 4, .damping = rows[k][0], .form = DAMPING_CRITICAL};
+    const struct contact_law law = law_of(4, 1, rows[k][0], DAMPING_CRITICAL);
     cr_expect_float_eq(spring_restitution(&law, 0.6, false), rows[k][1], 4e-5, "zeta %g", rows[k][0]);
     cr_expect_float_eq(spring_restitution(&law, 0.6, true), rows[k][2], 4e-5, "zeta %g", rows[k][0]);
   }
@@ -475,7 +511,7 @@ static double fastest_parting(const struct impact *i, int64_t steps)
   return fastest / i->speed;
 }
 
-/* Over eight decades of stiffness, offsets in a cell, directions, and sub-steps as needed or far too few. */
+/* Over eight decades of stiffness, offsets in a cell, directions, and sub-steps as needed or far too few; areas by cells take one. */
 static void check_return(enum contact_area area, double damping, double most)
 {
   static const double directions[][2] = {{1, 0}, {0.6, -0.8}};
@@ -491,7 +527,7 @@ static void check_return(enum contact_area area, double damping, double most)
                                     .damping = damping,
                                     .place = {0.37 * k, 0.61 * k},
                                     .area = area,
-                                    .substeps = substeps[k % 3]};
+                                    .substeps = area == AREA_CELLS ? 0 : substeps[k % 3]};
       const double parting = fastest_parting(&impact, 100);
       cr_expect(parting > -1 && parting <= most, "area %d, overlap %g, damping %g, sub-steps %d, place %d: parts at %g",
                 area, impact.overlap, damping, impact.substeps, k, parting);
@@ -506,23 +542,16 @@ Test(impact, gives_back_no_more_speed_than_it_took_whatever_the_area_and_the_sub
   check_return(AREA_CELLS, 0.34, 1.001);
 }
 
-/* An area by cells begins where a lens does not, but when stiff it lasts as long and is damped as much. */
-Test(impact, stiff_contacts_by_cells_are_damped_as_those_by_lens)
+Test(impact, by_cells_takes_one_sub_step_however_stiff)
 {
-  for (double decade = 4; decade <= 8; decade++)
-    for (int k = 0; k < 6; k++) {
-      struct impact impact = {.radius = {10, 10},
-                              .direction = {k % 2, 1 - k % 2},
-                              .speed = 0.05,
-                              .gap = 1.3 + 0.01 * k,
-                              .overlap = 0.6 * pow(10, -0.4 * decade),
-                              .damping = 0.34,
-                              .place = {0.37 * k, 0.61 * k}};
-      const double lens = fastest_parting(&impact, 100);
-      impact.area = AREA_CELLS;
-      const double cells = fastest_parting(&impact, 100);
-      cr_expect_float_eq(cells, lens, 0.02, "decade %g, place %d: %g, by lens %g", decade, k, cells, lens);
-    }
+  const struct impact impact = {.radius = {10, 10},
+                                .direction = {1, 0},
+                                .speed = 0.05,
+                                .gap = 1.3,
+                                .overlap = 1e-3,
+                                .damping = 0.34,
+                                .area = AREA_CELLS};
+  cr_expect_eq(follow(&impact).substeps, 1);
 }
 
 /* Two discs of radius 5 that meet head on in a fluid that matters. */
@@ -631,10 +660,10 @@ static void check_rest(double stiffness, enum contact_area area, int substeps, d
 
 Test(rest, contacts_bear_the_whole_weight_of_a_stack_and_do_not_give_way)
 {
-  for (enum contact_area area = AREA_LENS; area <= AREA_CELLS; area++)
-    for (double stiffness = 25; stiffness <= 250000; stiffness *= 100) check_rest(stiffness, area, 0, 1e-6);
+  for (double stiffness = 25; stiffness <= 250000; stiffness *= 100) check_rest(stiffness, AREA_LENS, 0, 1e-6);
+  check_rest(25, AREA_CELLS, 0, 1e-6);
   check_rest(2500, AREA_LENS, 1, 0.5); /* far too few */
-  check_rest(2500, AREA_CELLS, 1, 0.5);
+  check_rest(2500, AREA_CELLS, 0, 0.5);
 }
 
 /* The message with which the first step fails. */
@@ -650,25 +679,25 @@ static void expect_refusal(const struct scene *scene, int threads)
 }
 
 /* Contacts of a random few of so many discs, in order. */
-static struct contact_memory random_memory(gsl_rng *random, uint32_t discs)
+static struct contact_states random_states(gsl_rng *random, uint32_t discs)
 {
-  struct contact_memory memory = {0};
+  struct contact_states memory = {0};
   struct status status;
-  cr_assert(contact_memory_reserve(&memory, discs * (discs + 7) / 2, &status), "%s", status.message);
+  cr_assert(states_reserve(&memory, discs * (discs + 7) / 2, &status), "%s", status.message);
   for (int sides = 0; sides < 2; sides++)
     for (uint32_t a = 0; a < discs; a++)
       for (uint32_t b = sides ? 0 : a + 1; b < (sides ? 4 : discs); b++)
         if (gsl_rng_uniform(random) < 0.5)
-          contact_memory_add(&memory, a, sides ? contact_sides + b : b,
-                             &(struct contact_account){.stored = gsl_rng_uniform(random)});
+          states_add(&memory, a, sides ? contact_sides + b : b,
+                     &(struct contact_state){.stored = gsl_rng_uniform(random)});
   return memory;
 }
 
-static bool pass(struct contact_memory *memory, uint32_t discs, char *bytes, size_t size, bool saving,
+static bool pass(struct contact_states *memory, uint32_t discs, char *bytes, size_t size, bool saving,
                  struct status *status)
 {
   struct store store = {.stream = fmemopen(bytes, size, saving ? "wb" : "rb"), .path = "memory", .saving = saving};
-  const bool passed = contact_memory_store(memory, discs, &store, status);
+  const bool passed = states_store(memory, discs, &store, status);
   fclose(store.stream);
   return passed;
 }
@@ -773,28 +802,28 @@ Test(overlap, at_the_start_is_found_between_all_discs_and_with_all_sides)
   scene_clear(&scene);
 }
 
-Test(memory, walked_through_from_anywhere_finds_each_contact_and_no_other)
+Test(states, asked_for_in_order_are_found_each_and_no_other)
 {
   enum { DISCS = 9 };
-  gsl_rng *random = random_from(4);
-  const struct contact_memory memory = random_memory(random, DISCS);
-  size_t whole = 0, found = 0;
+  gsl_rng *random = random_from(4), *again = random_from(4);
+  struct contact_states states = random_states(random, DISCS);
+  size_t at = 0, found = 0;
   for (int sides = 0; sides < 2; sides++)
     for (uint32_t a = 0; a < DISCS; a++)
       for (uint32_t b = sides ? 0 : a + 1; b < (sides ? 4 : DISCS); b++) {
-        const uint32_t other = sides ? contact_sides + b : b;
-        size_t here = contact_memory_seek(&memory, a, other);
-        const struct contact_account *walked = contact_memory_walk(&memory, &whole, a, other);
-        cr_expect_eq(walked, contact_memory_walk(&memory, &here, a, other));
-        found += walked != NULL;
+        const struct contact_state *state = states_next(&states, &at, a, sides ? contact_sides + b : b);
+        const bool saved = gsl_rng_uniform(again) < 0.5;
+        cr_expect_eq(state != NULL, saved, "%u, %u", a, b);
+        if (saved) cr_expect_eq(state ? state->stored : -1, gsl_rng_uniform(again));
+        found += saved;
       }
-  cr_expect_eq(found, memory.count);
-  struct contact_memory done = memory;
-  contact_memory_destroy(&done);
+  cr_expect_eq(found, states.count);
+  states_destroy(&states);
   gsl_rng_free(random);
+  gsl_rng_free(again);
 }
 
-Test(memory, comes_back_whole_and_is_refused_in_words_where_a_run_cannot_have_left_it)
+Test(states, come_back_whole_and_are_refused_in_words_where_a_run_cannot_have_left_them)
 {
   enum { DISCS = 6, HEAD = sizeof(uint64_t), ENTRY = 40, ROOM = HEAD + DISCS * (DISCS + 7) / 2 * ENTRY };
   static const double wrong[] = {NAN, INFINITY, -1};
@@ -803,7 +832,7 @@ Test(memory, comes_back_whole_and_is_refused_in_words_where_a_run_cannot_have_le
   char bytes[ROOM] = {0}, again[ROOM] = {0};
   struct status status;
   gsl_rng *random = random_from(5);
-  struct contact_memory memory = random_memory(random, DISCS), other = {0};
+  struct contact_states memory = random_states(random, DISCS), other = {0};
   cr_assert(memory.count > 2 && pass(&memory, DISCS, bytes, ROOM, true, &status), "%s", status.message);
   cr_assert(pass(&other, DISCS, bytes, ROOM, false, &status) && pass(&other, DISCS, again, ROOM, true, &status));
   cr_expect_eq(memcmp(bytes, again, ROOM), 0);
@@ -826,8 +855,8 @@ Test(memory, comes_back_whole_and_is_refused_in_words_where_a_run_cannot_have_le
     cr_expect(!pass(&other, DISCS, again, ROOM, false, &status) && strstr(status.message, "cannot read memory: "),
               "%zu: %s", k, status.message);
   }
-  contact_memory_destroy(&memory);
-  contact_memory_destroy(&other);
+  states_destroy(&memory);
+  states_destroy(&other);
   gsl_rng_free(random);
 }
 
@@ -843,6 +872,30 @@ Test(contacts, too_stiff_to_be_followed_are_refused_by_any_number_of_threads)
   crowd.contact.stiffness = 1e30;
   expect_refusal(&crowd, 1);
   expect_refusal(&crowd, 4);
+  scene_clear(&crowd);
+}
+
+Test(contacts, of_a_crowd_are_the_same_bits_for_any_number_of_threads)
+{
+  enum { STEPS = 25 };
+  struct scene crowd = scene_crowd(160, 160, 4, 8, 0.5);
+  crowd.contact.stiffness = 30;
+  const size_t count = crowd.particles.count, bytes = count * sizeof(double);
+  double *state[2] = {malloc(4 * bytes), malloc(4 * bytes)};
+  for (int threads = 1; threads <= 3; threads++) {
+    omp_set_num_threads(threads);
+    struct simulation *simulation = start(&crowd);
+    advance(simulation, STEPS);
+    const struct discs *d = simulation_discs(simulation);
+    double *const arrays[] = {d->x, d->vy, d->omega, d->contact_fx};
+    for (size_t k = 0; k < 4; k++) memcpy(state[threads > 1] + k * count, arrays[k], bytes);
+    struct simulation_report report;
+    simulation_report(simulation, &report);
+    cr_expect_gt(report.max_substeps, 1);
+    cr_expect(threads == 1 || memcmp(state[0], state[1], 4 * bytes) == 0, "%d threads", threads);
+    simulation_destroy(simulation);
+  }
+  for (int k = 0; k < 2; k++) free(state[k]);
   scene_clear(&crowd);
 }
 

@@ -161,7 +161,7 @@ Test(reproducibility, any_number_of_threads_gives_the_same_bits)
     if (k == 4) scene.domain.side[SIDE_LEFT].type = scene.domain.side[SIDE_RIGHT].type = SIDE_OUTLET;
     if (k == 5) scene.domain.side[SIDE_TOP].type = SIDE_OUTLET;
     scene.fluid.zero_flux = sides && k < 4;
-    scene.contact.area = k < 2 ? AREA_LENS : AREA_CELLS;
+    scene.contact.area = k < 2 ? AREA_CELLS : AREA_LENS;
     scene.contact.stiffness = k < 2 ? 0.25 : 30;
     scene.particles.gravity[1] = -1e-4;
     const size_t count = 10 * 49 + (size_t)(scene.domain.size[0] * scene.domain.size[1]);

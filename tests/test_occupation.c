@@ -1,6 +1,6 @@
 /* Occupation: how much of each cell each disc covers, who shares a cell, and who is near whom. */
-#include "contact/linked_cell.h"
-#include "contact/overlap.h"
+#include "contact/cells_area.h"
+#include "contact/pairs.h"
 #include "scenes.h"
 #include "solid/disc_area.h"
 #include "solid/occupation.h"
@@ -28,11 +28,11 @@ static void paint(struct painting *p)
   cr_assert_not(team.failed, "%s", team.first.message);
 }
 
-static void begin(struct painting *p, int reach)
+static void begin(struct painting *p)
 {
   struct status status;
   cr_assert(discs_create(&p->discs, &p->scene, &status), "%s", status.message);
-  cr_assert(occupation_create(&p->occupation, &p->scene, &p->discs, reach, &status), "%s", status.message);
+  cr_assert(occupation_create(&p->occupation, &p->scene, &p->discs, &status), "%s", status.message);
 }
 
 static void end(struct painting *p)
@@ -83,7 +83,7 @@ static void spread(const struct painting *p, size_t disc, double *cells)
   alone.scene.particles.count = 1;
   alone.scene.particles.discs = &(struct disc_spec){.radius = p->discs.radius[disc], .density = 2};
   alone.scene.coupling.form = FORM_OWEN;
-  begin(&alone, p->occupation.reach);
+  begin(&alone);
   alone.discs.x[0] = p->discs.x[disc];
   alone.discs.y[0] = p->discs.y[disc];
   paint(&alone);
@@ -204,7 +204,7 @@ static void one_disc(struct painting *p, int nx, int ny, enum sides sides, doubl
 {
   p->scene = scene_box(nx, ny, 0.05, sides);
   scene_add_disc(&p->scene, radius, 2, x, y);
-  begin(p, 0);
+  begin(p);
   paint(p);
 }
 
@@ -272,7 +272,7 @@ Test(occupation, edges_on_grid_lines_but_for_round_off_are_painted_like_any_othe
     scene_add_disc(&p.scene, 2 + k / 10.0 + 0.4, 2, 100.05, 24.3);
     scene_add_disc(&p.scene, 2 + k / 10.0, 2, 1000, 24.3);
   }
-  begin(&p, 0);
+  begin(&p);
   for (int n = 0; n < 400; n++) {
     for (size_t i = 0; i < p.discs.count; i++) p.discs.x[i] = i % 2 ? 1000 + n / 10.0 : 100.05 + n / 20.0;
     paint(&p);
@@ -286,32 +286,25 @@ Test(occupation, edges_on_grid_lines_but_for_round_off_are_painted_like_any_othe
   end(&p);
 }
 
-static void check_runs(int reach)
+Test(occupation, runs_know_where_their_cells_lie_from_the_centre)
 {
   struct painting p = {.scene = scene_box(37, 41, 0.05, SIDES_PERIODIC)};
   scene_add_disc(&p.scene, 8.3, 2, 1.7, 40.2);
   scene_add_disc(&p.scene, 3, 2, 36.9, 20.5);
   scene_add_disc(&p.scene, 4.2, 2, 21.6, 18.3); /* clear of all sides */
-  begin(&p, reach);
+  begin(&p);
   paint(&p);
   for (int y = 0; y < 41; y++) {
     size_t count;
     const struct run *row = occupation_row(&p.occupation, y, &count);
     for (size_t r = 0; r < count; r++) {
-      if (row[r].n == 0) continue;
       double corner[2];
       corner_of(&p, row[r].disc, row[r].x, y, corner);
-      cr_expect_float_eq(row[r].rx, corner[0] + 0.5, 1e-13, "reach %d, disc %u, row %d", reach, row[r].disc, y);
-      cr_expect_float_eq(row[r].ry, corner[1] + 0.5, 1e-13, "reach %d, disc %u, row %d", reach, row[r].disc, y);
+      cr_expect_float_eq(row[r].rx, corner[0] + 0.5, 1e-13, "disc %u, row %d", row[r].disc, y);
+      cr_expect_float_eq(row[r].ry, corner[1] + 0.5, 1e-13, "disc %u, row %d", row[r].disc, y);
     }
   }
   end(&p);
-}
-
-Test(occupation, runs_know_where_their_cells_lie_from_the_centre)
-{
-  check_runs(0);
-  check_runs(1);
 }
 
 /* Discs of radii from 0.5 to `largest` all over the box. */
@@ -382,11 +375,6 @@ static const char *compare(const struct occupation *a, const struct occupation *
         if (memcmp(s->share + share, t->share + share, bytes)) return "shares";
       }
     if (s->shared_cells != t->shared_cells || s->shared_owners != t->shared_owners) return "count of shared cells";
-    if (a->batches[k].count != b->batches[k].count) return "count of pairs";
-    for (size_t n = 0; n < a->batches[k].count; n++) {
-      const struct near_pair *l = &a->batches[k].pairs[n], *r = &b->batches[k].pairs[n];
-      if (l->a != r->a || l->b != r->b || memcmp(&l->cells_area, &r->cells_area, sizeof(double))) return "pairs";
-    }
   }
   return difference;
 }
@@ -395,7 +383,7 @@ static const char *compare(const struct occupation *a, const struct occupation *
 static const char *compare_with_fresh(const struct painting *p)
 {
   struct painting fresh = {.scene = p->scene};
-  begin(&fresh, p->occupation.reach);
+  begin(&fresh);
   memcpy(fresh.discs.x, p->discs.x, p->discs.count * sizeof(double));
   memcpy(fresh.discs.y, p->discs.y, p->discs.count * sizeof(double));
   memcpy(fresh.discs.omega, p->discs.omega, p->discs.count * sizeof(double));
@@ -406,17 +394,17 @@ static const char *compare_with_fresh(const struct painting *p)
   return difference;
 }
 
-static void check_history(enum sides sides, int reach, unsigned long seed)
+static void check_history(enum sides sides, unsigned long seed)
 {
   gsl_rng *random = random_from(seed);
   struct painting p = {.scene = scene_box(97, 83, 0.02, sides)};
   scatter(&p.scene, 30, 30, random);
-  begin(&p, reach);
+  begin(&p);
   for (int step = 0; step < 300; step++) {
     paint(&p);
     const char *difference = compare_with_fresh(&p);
-    cr_assert_null(difference, "seed %lu, %s, reach %d, step %d: %s differ", seed,
-                   sides == SIDES_PERIODIC ? "periodic" : "closed", reach, step, difference);
+    cr_assert_null(difference, "seed %lu, %s, step %d: %s differ", seed,
+                   sides == SIDES_PERIODIC ? "periodic" : "closed", step, difference);
     stir(&p, random);
   }
   end(&p);
@@ -425,10 +413,8 @@ static void check_history(enum sides sides, int reach, unsigned long seed)
 
 Test(occupation, tables_depend_on_where_discs_are_and_not_on_where_they_were)
 {
-  for (int reach = 0; reach < 2; reach++) {
-    check_history(SIDES_PERIODIC, reach, 21 + (unsigned long)reach);
-    check_history(SIDES_CLOSED, reach, 31 + (unsigned long)reach);
-  }
+  check_history(SIDES_PERIODIC, 21);
+  check_history(SIDES_CLOSED, 31);
 }
 
 static size_t stale_bands(const struct occupation *o)
@@ -439,12 +425,12 @@ static size_t stale_bands(const struct occupation *o)
 }
 
 /* One disc moves a step, in a box of many bands. */
-static void check_few_move(enum sides sides, int reach, unsigned long seed)
+static void check_few_move(enum sides sides, unsigned long seed)
 {
   gsl_rng *random = random_from(seed);
   struct painting p = {.scene = scene_box(60, 400, 0.02, sides)};
   scatter(&p.scene, 40, 6, random);
-  begin(&p, reach);
+  begin(&p);
   paint(&p);
   for (int step = 0; step < 400; step++) {
     const size_t i = gsl_rng_uniform_int(random, p.discs.count);
@@ -455,7 +441,7 @@ static void check_few_move(enum sides sides, int reach, unsigned long seed)
     cr_assert(stale_bands(&p.occupation) <= 8, "step %d: %zu bands painted for one disc", step,
               stale_bands(&p.occupation));
     const char *difference = compare_with_fresh(&p);
-    cr_assert_null(difference, "seed %lu, reach %d, step %d: %s differ", seed, reach, step, difference);
+    cr_assert_null(difference, "seed %lu, step %d: %s differ", seed, step, difference);
   }
   paint(&p);
   cr_expect_eq(stale_bands(&p.occupation), 0, "nothing has moved");
@@ -465,10 +451,8 @@ static void check_few_move(enum sides sides, int reach, unsigned long seed)
 
 Test(occupation, only_bands_that_a_disc_moves_in_leaves_or_enters_are_painted)
 {
-  for (int reach = 0; reach < 2; reach++) {
-    check_few_move(SIDES_PERIODIC, reach, 61 + (unsigned long)reach);
-    check_few_move(SIDES_CLOSED, reach, 71 + (unsigned long)reach);
-  }
+  check_few_move(SIDES_PERIODIC, 61);
+  check_few_move(SIDES_CLOSED, 71);
 }
 
 static void paint_by_threads(struct painting *p, int threads)
@@ -485,7 +469,7 @@ static void paint_by_threads(struct painting *p, int threads)
   cr_assert_not(team.failed);
 }
 
-static void check_threads(enum sides sides, int reach, unsigned long seed)
+static void check_threads(enum sides sides, unsigned long seed)
 {
   enum { TEAMS = 4 };
   static const int threads[TEAMS] = {1, 2, 3, 7};
@@ -494,7 +478,7 @@ static void check_threads(enum sides sides, int reach, unsigned long seed)
   scatter(&p[0].scene, 60, 20, random);
   for (int k = 0; k < TEAMS; k++) {
     p[k].scene = p[0].scene;
-    begin(&p[k], reach);
+    begin(&p[k]);
   }
   for (int step = 0; step < 30; step++) {
     for (int k = 0; k < TEAMS; k++) {
@@ -503,8 +487,7 @@ static void check_threads(enum sides sides, int reach, unsigned long seed)
       memcpy(p[k].discs.omega, p[0].discs.omega, p[0].discs.count * sizeof(double));
       paint_by_threads(&p[k], threads[k]);
       const char *difference = compare(&p[0].occupation, &p[k].occupation);
-      cr_assert_null(difference, "seed %lu, reach %d, step %d, %d threads: %s differ", seed, reach, step, threads[k],
-                     difference);
+      cr_assert_null(difference, "seed %lu, step %d, %d threads: %s differ", seed, step, threads[k], difference);
     }
     stir(&p[0], random);
   }
@@ -517,10 +500,8 @@ static void check_threads(enum sides sides, int reach, unsigned long seed)
 
 Test(occupation, tables_are_the_same_bits_for_any_number_of_threads)
 {
-  for (int reach = 0; reach < 2; reach++) {
-    check_threads(SIDES_PERIODIC, reach, 41 + (unsigned long)reach);
-    check_threads(SIDES_CLOSED, reach, 51 + (unsigned long)reach);
-  }
+  check_threads(SIDES_PERIODIC, 41);
+  check_threads(SIDES_CLOSED, 51);
 }
 
 /* A small box crowded with discs, and the fractions and shares of all of them in all cells. */
@@ -528,38 +509,27 @@ enum { CROWD = 22, CROWD_NX = 45, CROWD_NY = 38, CROWD_CELLS = CROWD_NX * CROWD_
 
 struct crowd {
   struct painting p;
-  struct pair_list pairs;
   double eps[CROWD][CROWD_CELLS], share[CROWD][CROWD_CELLS];
 };
 
 /* Some with nearly or exactly the centre of the one before. */
-static void crowd_create(struct crowd *c, enum sides sides, int reach, unsigned long seed)
+static void crowd_create(struct crowd *c, enum sides sides, unsigned long seed)
 {
-  struct status status;
   gsl_rng *random = random_from(seed);
   c->p.scene = scene_box(CROWD_NX, CROWD_NY, log_uniform(random, 0.002, 0.3), sides);
-  c->p.scene.contact.area = AREA_CELLS; /* so that each row notes what it shares */
   scatter(&c->p.scene, CROWD, 10, random);
   c->p.scene.coupling.form = (enum coupling_form)(seed % FORM_COUNT);
   struct disc_spec *discs = c->p.scene.particles.discs;
   for (int i = 3; i < CROWD; i += 3)
     for (int axis = 0; axis < 2; axis++)
       discs[i].position[axis] = fmax(0, discs[i - 1].position[axis] - (i % 2 ? 0 : 1e-9));
-  begin(&c->p, reach);
+  begin(&c->p);
   paint(&c->p);
   for (size_t i = 0; i < CROWD; i++) {
     spread(&c->p, i, c->eps[i]);
     spread_shares(&c->p, i, c->share[i]);
   }
-  cr_assert(overlap_create(&c->pairs, CROWD, &status));
-  cr_assert(overlap_join(&c->pairs, c->p.occupation.batches, (size_t)c->p.occupation.band_count, CROWD, &status));
   gsl_rng_free(random);
-}
-
-static void crowd_destroy(struct crowd *c)
-{
-  overlap_destroy(&c->pairs);
-  end(&c->p);
 }
 
 /* Checks a cell's shares and returns how many own it. */
@@ -593,7 +563,7 @@ Test(occupation, owners_share_a_cell_in_proportion_to_what_they_cover)
   static struct crowd c;
   int most = 0;
   for (unsigned long seed = 61; seed < 91; seed++) {
-    crowd_create(&c, both_sides[seed % 2], seed % 4 < 2, seed);
+    crowd_create(&c, both_sides[seed % 2], seed);
     for (size_t i = 0; i < CROWD; i++) {
       const double worst = worst_cell(&c.p, i);
       cr_expect(worst < 1e-10, "seed %lu, disc %zu: %g", seed, i, worst);
@@ -602,40 +572,20 @@ Test(occupation, owners_share_a_cell_in_proportion_to_what_they_cover)
       const int owners = check_shares(&c, cell, seed);
       if (owners > most) most = owners;
     }
-    crowd_destroy(&c);
+    end(&c.p);
   }
   cr_assert(most >= 6, "at most %d owners: not crowded enough", most);
 }
 
-static const struct near_pair *find_pair(const struct pair_list *pairs, uint32_t a, uint32_t b)
+/* Area (23) over all cells of the box, from the fractions of both discs. */
+static double area_by_all_cells(const struct crowd *c, uint32_t a, uint32_t b)
 {
-  for (size_t k = 0; k < pairs->count; k++)
-    if (pairs->pairs[k].a == a && pairs->pairs[k].b == b) return &pairs->pairs[k];
-  return NULL;
-}
-
-static void check_order(const struct pair_list *pairs, unsigned long seed)
-{
-  for (size_t k = 0; k < pairs->count; k++) {
-    const struct near_pair *pair = &pairs->pairs[k], *before = pair - (k > 0);
-    cr_expect(pair->a < pair->b, "seed %lu: pair (%u, %u)", seed, pair->a, pair->b);
-    cr_expect(k == 0 || before->a < pair->a || (before->a == pair->a && before->b < pair->b),
-              "seed %lu: (%u, %u) after (%u, %u)", seed, pair->a, pair->b, before->a, before->b);
-  }
-}
-
-/* Over all cells: whether both discs have part of one, and the area (23) of those. */
-static bool meet_by_cells(const struct crowd *c, uint32_t a, uint32_t b, double *area)
-{
-  bool meet = false;
-  *area = 0;
+  double area = 0;
   for (int cell = 0; cell < CROWD_CELLS; cell++) {
     const double eps_a = c->eps[a][cell], eps_b = c->eps[b][cell];
-    if (!(eps_a > 0 && eps_b > 0)) continue;
-    meet = true;
-    *area += fmax(0, eps_a + eps_b - 0.95);
+    if (eps_a > 0 && eps_b > 0) area += fmax(0, eps_a + eps_b - 0.95);
   }
-  return meet;
+  return area;
 }
 
 /* Gap between two discs, by the nearest images of their centres. */
@@ -645,141 +595,150 @@ static double gap_between(const struct painting *p, uint32_t a, uint32_t b)
   return hypot(dx, dy) - p->discs.radius[a] - p->discs.radius[b];
 }
 
-static void check_pairs(const struct crowd *c, int reach, unsigned long seed)
+/* A disc and another that reaches it across two sides of a periodic box at once share cells with two images, of which a contact is
+ * with the nearest. */
+static bool is_small(const struct crowd *c, uint32_t a, uint32_t b)
 {
-  const double furthest = (2 * reach + 1) * M_SQRT2 + 1e-9; /* both in one cell, or in cells that touch */
-  check_order(&c->pairs, seed);
-  for (uint32_t a = 0; a < CROWD; a++)
-    for (uint32_t b = a + 1; b < CROWD; b++) {
-      double area;
-      const bool meet = meet_by_cells(c, a, b, &area);
-      const struct near_pair *pair = find_pair(&c->pairs, a, b);
-      cr_expect(pair || !meet, "seed %lu: (%u, %u) share a cell but are no pair", seed, a, b);
-      if (!pair) continue;
-      cr_expect_float_eq(pair->cells_area, area, 1e-12 * fmax(1, area), "seed %lu: (%u, %u): %.17g, not %.17g", seed, a,
-                         b, pair->cells_area, area);
-      cr_expect(gap_between(&c->p, a, b) < furthest, "seed %lu: (%u, %u) are far apart", seed, a, b);
-    }
+  return c->p.discs.radius[a] + c->p.discs.radius[b] < CROWD_NY / 2 - 2;
 }
 
-Test(occupation, pairs_are_the_discs_that_share_a_cell_each_once_with_their_area_by_cells)
+Test(cells_area, is_that_of_the_cells_that_both_discs_cover_and_none_from_its_gap_on)
 {
   static struct crowd c;
+  int apart = 0;
   for (unsigned long seed = 101; seed < 161; seed++) {
-    const int reach = seed % 4 < 2;
-    crowd_create(&c, both_sides[seed % 2], reach, seed);
-    check_pairs(&c, reach, seed);
-    crowd_destroy(&c);
+    crowd_create(&c, both_sides[seed % 2], seed);
+    double *scratch = calloc(cells_area_scratch(&c.p.discs), sizeof *scratch);
+    for (uint32_t a = 0; a < CROWD; a++)
+      for (uint32_t b = a + 1; b < CROWD; b++) {
+        const double area = area_by_all_cells(&c, a, b), gap = gap_between(&c.p, a, b);
+        if (!is_small(&c, a, b)) continue;
+        cr_expect_float_eq(cells_area(&c.p.scene, &c.p.discs, a, b, scratch), area, 1e-10 * fmax(1, area),
+                           "seed %lu: (%u, %u), gap %g", seed, a, b, gap);
+        cr_expect(gap < cells_area_gap || area == 0, "seed %lu: (%u, %u), gap %g: area %g", seed, a, b, gap, area);
+        apart += gap > 0 && area > 0;
+      }
+    free(scratch);
+    end(&c.p);
   }
+  cr_expect_gt(apart, 5, "%d pairs with an area but no overlap show little", apart);
 }
 
-/* All pairs closer than the reach are found; returns how many of them. */
-static int check_reach(const struct painting *p, struct pair_list *pairs, unsigned long seed)
+static void update(struct pair_list *pairs, const struct painting *p, int threads)
 {
-  struct status status;
-  int near = 0;
-  cr_assert(overlap_join(pairs, p->occupation.batches, (size_t)p->occupation.band_count, p->occupation.discs, &status));
+  struct team team = {0};
+  omp_set_dynamic(0);
+#pragma omp parallel num_threads(threads)
+  pairs_update(pairs, &p->occupation, &p->discs, &team);
+  cr_assert_not(team.failed, "%s", team.first.message);
+}
+
+/* In order, each once, and all of them whose gap is below `near`; returns how many those are. */
+static size_t check_pairs(const struct pair_list *pairs, const struct painting *p, double near, unsigned long seed)
+{
+  size_t at = 0, count = 0;
+  for (size_t k = 1; k < pairs->count; k++) {
+    const struct pair *before = &pairs->pairs[k - 1], *pair = &pairs->pairs[k];
+    cr_assert(before->a < pair->a || (before->a == pair->a && before->b < pair->b), "seed %lu: (%u, %u), (%u, %u)",
+              seed, before->a, before->b, pair->a, pair->b);
+  }
   for (uint32_t a = 0; a < p->discs.count; a++)
     for (uint32_t b = a + 1; b < p->discs.count; b++) {
       const double gap = gap_between(p, a, b);
-      if (gap >= p->occupation.reach) continue;
-      const struct near_pair *pair = find_pair(pairs, a, b);
-      cr_expect(pair, "seed %lu: (%u, %u) at (%.17g, %.17g) and (%.17g, %.17g), %g apart, are no pair", seed, a, b,
+      if (gap >= near) continue;
+      while (at < pairs->count && (pairs->pairs[at].a < a || (pairs->pairs[at].a == a && pairs->pairs[at].b < b))) at++;
+      cr_assert(at < pairs->count && pairs->pairs[at].a == a && pairs->pairs[at].b == b,
+                "seed %lu: (%u, %u) at (%.17g, %.17g) and (%.17g, %.17g), %g apart, are no pair", seed, a, b,
                 p->discs.x[a], p->discs.y[a], p->discs.x[b], p->discs.y[b], gap);
-      near++;
+      count++;
     }
-  return near;
+  return count;
 }
 
-static int check_reach_in(enum sides sides, int reach, unsigned long seed)
+/* Lists that are brought up to date, by any search, hold all pairs closer than the length that was asked for; new ones also those
+ * that the margin adds, and no others. */
+static size_t check_search(enum sides sides, double near, double edge, unsigned long seed)
 {
   struct status status;
   gsl_rng *random = random_from(seed);
   struct painting p = {.scene = scene_box(120, 90, 0.02, sides)};
-  struct pair_list pairs;
+  struct pair_list pairs, fresh;
+  size_t count = 0;
   scatter(&p.scene, 50, 12, random);
-  begin(&p, reach);
-  cr_assert(overlap_create(&pairs, p.discs.count, &status));
-  int near = 0;
-  for (int step = 0; step < 300; step++) {
+  p.scene.contact.search = edge >= 0 ? SEARCH_LINKED_CELL : SEARCH_GRID;
+  p.scene.contact.edge = edge;
+  begin(&p);
+  cr_assert(pairs_create(&pairs, &p.scene, &p.discs, near, &status), "%s", status.message);
+  for (int step = 0; step < 60; step++) {
     paint(&p);
-    near += check_reach(&p, &pairs, seed);
+    update(&pairs, &p, 1 + step % 3);
+    count += check_pairs(&pairs, &p, near, seed);
+    cr_assert(pairs_create(&fresh, &p.scene, &p.discs, near, &status), "%s", status.message);
+    update(&fresh, &p, 2);
+    cr_expect_eq(check_pairs(&fresh, &p, near + pairs_margin, seed), fresh.count);
+    pairs_destroy(&fresh);
     stir(&p, random);
   }
-  overlap_destroy(&pairs);
+  pairs_destroy(&pairs);
   end(&p);
   gsl_rng_free(random);
-  return near;
+  return count;
 }
 
-Test(occupation, every_pair_that_overlaps_or_is_closer_than_the_reach_is_found)
+Test(pairs, that_are_near_are_all_listed_in_order_by_the_grid_and_by_linked_cells)
 {
-  for (unsigned long k = 0; k < 4; k++) {
-    const int reach = k >= 2, near = check_reach_in(both_sides[k % 2], reach, 171 + k);
-    cr_assert(near > 1000, "only %d pairs within reach %d: nothing shown", near, reach);
-  }
+  static const double edges[] = {-1, 0, 3, 25}; /* -1: the grid */
+  static const double lengths[] = {0, 0.2237, 1};
+  for (int e = 0; e < 4; e++)
+    for (int l = 0; l < 3; l++)
+      for (int s = 0; s < 2; s++) {
+        const size_t count = check_search(both_sides[s], lengths[l], edges[e], 171 + (unsigned long)l);
+        cr_expect_gt(count, 200, "%zu pairs show little", count);
+      }
 }
 
-/* Discs side by side in line with the grid, their gap just below a cell, wherever the grid lines fall. */
-Test(occupation, with_reach_neighbours_along_the_grid_are_found_across_periodic_sides)
+/* Discs side by side in line with the grid, their gap just below the greatest, wherever the grid lines fall. */
+Test(pairs, along_the_grid_are_found_across_periodic_sides)
 {
   struct status status;
   struct painting p = {.scene = scene_box(30, 30, 0.02, SIDES_PERIODIC)};
   struct pair_list pairs;
   for (int k = 0; k < 2; k++) scene_add_disc(&p.scene, 2.5, 2, 0, 0);
-  begin(&p, 1);
-  cr_assert(overlap_create(&pairs, 2, &status));
+  begin(&p);
   for (int axis = 0; axis < 2; axis++)
     for (int n = 0; n < 600; n++) {
       double *along = axis ? p.discs.y : p.discs.x, *across = axis ? p.discs.x : p.discs.y;
       along[0] = n / 20.0;
-      along[1] = into_box(&p, axis, along[0] + 5 + 0.999);
+      along[1] = into_box(&p, axis, along[0] + 5 + 1 + pairs_margin - 1e-6);
       across[0] = across[1] = (7 * n) % 600 / 20.0;
       paint(&p);
-      check_reach(&p, &pairs, 0);
+      cr_assert(pairs_create(&pairs, &p.scene, &p.discs, 1, &status), "%s", status.message);
+      update(&pairs, &p, 1);
+      cr_expect_eq(pairs.count, 1, "axis %d, place %d", axis, n);
+      pairs_destroy(&pairs);
     }
-  overlap_destroy(&pairs);
   end(&p);
 }
 
-/* All pairs whose gap is below the skin, each once with its lower index first, in order. */
-static void check_linked_cells(enum sides sides, double edge, unsigned long seed)
+Test(pairs, list_is_built_anew_when_a_disc_has_moved_half_the_margin_and_not_before)
 {
-  const double skin = 0.5;
-  gsl_rng *random = random_from(seed);
-  struct painting p = {.scene = scene_box(61, 47, 0.02, sides)};
-  struct linked_cell linked;
-  struct pair_list pairs;
   struct status status;
-  struct team team = {0};
-  scatter(&p.scene, 120, 3, random);
-  begin(&p, 0);
-  cr_assert(overlap_create(&pairs, p.discs.count, &status));
-  cr_assert(linked_cell_create(&linked, &p.scene, &p.discs, edge, skin, &status));
-  cr_assert(linked_cell_find(&linked, &p.discs, &pairs, &team));
-  size_t at = 0;
-  for (uint32_t a = 0; a < p.discs.count; a++)
-    for (uint32_t b = a + 1; b < p.discs.count; b++) {
-      const double dx = nearest(&p, 0, p.discs.x[b] - p.discs.x[a]), dy = nearest(&p, 1, p.discs.y[b] - p.discs.y[a]);
-      if (hypot(dx, dy) >= p.discs.radius[a] + p.discs.radius[b] + skin) continue;
-      cr_assert(at < pairs.count && pairs.pairs[at].a == a && pairs.pairs[at].b == b,
-                "sides %d, edge %g, seed %lu: pair %zu is not %u, %u", sides, edge, seed, at, a, b);
-      at++;
-    }
-  cr_expect_eq(at, pairs.count, "sides %d, edge %g, seed %lu: %zu pairs, not %zu", sides, edge, seed, pairs.count, at);
-  cr_expect_gt(at, 50, "%zu pairs show little", at);
-  linked_cell_destroy(&linked);
-  overlap_destroy(&pairs);
+  struct painting p = {.scene = scene_box(40, 40, 0.02, SIDES_PERIODIC)};
+  struct pair_list pairs;
+  scene_add_disc(&p.scene, 5, 2, 39.8, 20);
+  scene_add_disc(&p.scene, 5, 2, 20, 20);
+  begin(&p);
+  cr_assert(pairs_create(&pairs, &p.scene, &p.discs, 1, &status), "%s", status.message);
+  paint(&p);
+  update(&pairs, &p, 2);
+  p.discs.x[0] = 39.8 + 0.49 * pairs_margin - 40; /* across the side */
+  paint(&p);
+  update(&pairs, &p, 2);
+  cr_expect_eq(pairs.x[0], 39.8);
+  p.discs.x[0] = 39.8 + 0.51 * pairs_margin - 40;
+  paint(&p);
+  update(&pairs, &p, 2);
+  cr_expect_eq(pairs.x[0], p.discs.x[0]);
+  pairs_destroy(&pairs);
   end(&p);
-  gsl_rng_free(random);
-}
-
-Test(linked_cells, find_each_pair_that_is_near_once_and_in_order)
-{
-  static const double edges[] = {0, 1.5, 3, 8, 25};
-  for (size_t k = 0; k < sizeof edges / sizeof edges[0]; k++)
-    for (unsigned long seed = 1; seed <= 4; seed++) {
-      check_linked_cells(SIDES_PERIODIC, edges[k], seed);
-      check_linked_cells(SIDES_CLOSED, edges[k], seed);
-    }
 }

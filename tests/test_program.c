@@ -449,6 +449,7 @@ Test(program, info_warns_of_what_the_maps_found_to_fail)
       {"--set coupling.form=owen --set run.steps=50000", "shake each other"},
       {"--set coupling.form=unified --set fluid.viscosity=0.05", "too little drag"},
       {"--set contact.substeps=1 --set contact.stiffness=1000", "1 sub-steps are fewer than"},
+      {"--set contact.area=cells --set contact.stiffness=1000", "areas by cells are known once a step"},
       {"--set 'particles.gravity=[0, -0.002]'", "of the fluid's pressure"},
       {"--set domain.left=periodic --set domain.right=periodic --set domain.bottom=periodic --set domain.top=periodic "
        "--set run.steps=3000",

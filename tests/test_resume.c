@@ -80,6 +80,7 @@ Test(state, of_stiff_contacts_is_whole)
   scene.contact.search = SEARCH_LINKED_CELL;
   expect_same_end("stiff", &scene, 400, 41);
   scene.contact.search = SEARCH_GRID;
+  expect_same_end("stiff, grid", &scene, 400, 63);
   scene.contact.area = AREA_CELLS;
   expect_same_end("stiff, cells", &scene, 400, 41);
 }

@@ -137,13 +137,12 @@ static void check_rates(struct draft *draft)
   if (rate >= 2) draft_refuse(draft, magic, "a value large enough for the rate q to be below 2");
 }
 
-/* Linked cells find pairs, not the cells that these share. */
-static void check_search(struct draft *draft)
+/* Areas by cells are known once a step. */
+static void check_substeps(struct draft *draft)
 {
   const struct scene *scene = &draft->scene;
-  if (scene->contact.search == SEARCH_LINKED_CELL && scene->contact.area == AREA_CELLS)
-    draft_refuse(draft, "contact.search",
-                 "grid: the area by cells is summed over the cells that the grid search finds");
+  if (scene->contact.area == AREA_CELLS && scene->contact.substeps > 1)
+    draft_refuse(draft, "contact.substeps", "auto or 1: with contact.area: cells the overlap is known once a step");
 }
 
 static void check_zero_flux(struct draft *draft)
@@ -408,7 +407,7 @@ bool case_check(struct draft *draft, struct status *status)
   check_sides(draft);
   check_rates(draft);
   check_zero_flux(draft);
-  check_search(draft);
+  check_substeps(draft);
   check_fill(draft);
   check_shown(draft);
   check_density(draft);

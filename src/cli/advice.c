@@ -1,5 +1,6 @@
 #include "cli/advice.h"
 
+#include "contact/substeps.h"
 #include "sim/estimate.h"
 #include "sim/stages.h"
 
@@ -94,10 +95,10 @@ static void advise_form_inside(const struct scene *scene)
 /* Maps "impact": contacts too short for the sub-steps that the case fixes. */
 static void advise_substeps(const struct scene *scene)
 {
-  if (scene->contact.substeps == 0) return;
+  if (scene->contact.substeps == 0 || scene->contact.area == AREA_CELLS) return;
   struct scene freely = *scene;
   freely.contact.substeps = 0;
-  const int needed = plan_largest_substeps(&freely);
+  const int needed = substeps_by_lens(&freely);
   if (needed > scene->contact.substeps)
     printf("  note: %d sub-steps are fewer than the %d that contacts may need: they damp otherwise than they should, "
            "and give way further; substeps: auto does not (bench/STABILITY.md)\n",

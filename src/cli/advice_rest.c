@@ -4,7 +4,6 @@
 
 #include "contact/law.h"
 #include "sim/estimate.h"
-#include "solid/lens.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -26,14 +25,14 @@ struct sediment {
   double low[2], high[2];      /* corners of the rectangle that holds them at the start */
 };
 
-static double weight_of(const struct scene *scene, const struct disc_spec *disc, int axis)
+static double buoyant_weight(const struct scene *scene, const struct disc_spec *disc, int axis)
 {
   return M_PI * disc->radius * disc->radius * (disc->density - 1) * scene->particles.gravity[axis];
 }
 
 static bool is_drawn(const struct scene *scene, const struct sediment *s, const struct disc_spec *disc)
 {
-  const double weight = weight_of(scene, disc, s->axis);
+  const double weight = buoyant_weight(scene, disc, s->axis);
   return disc->motion == DISC_FREE && weight != 0 && (weight > 0) == s->at_high_end;
 }
 
@@ -46,7 +45,7 @@ static struct sediment gather(const struct scene *scene, int axis, bool at_high_
     if (!is_drawn(scene, &s, disc)) continue;
     const double at = disc->position[axis];
     s.count++;
-    s.weight += fabs(weight_of(scene, disc, axis));
+    s.weight += fabs(buoyant_weight(scene, disc, axis));
     s.area += M_PI * disc->radius * disc->radius;
     s.radius += disc->radius;
     s.farthest = fmax(s.farthest, at_high_end ? scene->domain.size[axis] - at : at);
@@ -81,18 +80,19 @@ static bool comes_to_rest(const struct scene *scene, const struct sediment *s)
   return spare * way <= speed * (double)scene->run.steps;
 }
 
-/* Overlap at which the area law carries the load: of two equal discs or, for one that lies alone, of a disc and a side. */
-static struct lens lens_at(double radius, double overlap, bool alone)
+/* Force at an overlap of two equal discs or, for one that lies alone, of a disc and a side. */
+static double force_at(const struct contact_law *law, double overlap, double radius, bool alone)
 {
-  return alone ? lens_of_wall(radius, radius - overlap) : lens_of_discs(radius, radius, 2 * radius - overlap);
+  return contact_spring_at(law, (const double[2]){radius, alone ? INFINITY : radius}, overlap).force;
 }
 
-static double overlap_under(double load, double stiffness, double radius, bool alone)
+/* Overlap at which the contact law carries the load. */
+static double overlap_under(double load, const struct contact_law *law, double radius, bool alone)
 {
   double low = 0, high = radius;
   for (int k = 0; k < 50; k++) {
     const double overlap = (low + high) / 2;
-    if (stiffness * lens_at(radius, overlap, alone).area < load)
+    if (force_at(law, overlap, radius, alone) < load)
       low = overlap;
     else
       high = overlap;
@@ -103,13 +103,15 @@ static double overlap_under(double load, double stiffness, double radius, bool a
 /* In a pile a disc bears what lies on its width. */
 static double load_on(const struct scene *scene, const struct sediment *s, const struct disc_spec *disc, bool alone)
 {
-  const double own = fabs(weight_of(scene, disc, s->axis));
+  const double own = fabs(buoyant_weight(scene, disc, s->axis));
   return alone ? own : fmax(own, s->weight / width_of(scene, s) * 2 * disc->radius);
 }
 
 static void advise_overlap(const struct scene *scene, const struct sediment *s)
 {
   const struct contact_law law = contact_law_of(scene);
+  struct contact_law unit = law; /* with k_n = 1 */
+  unit.stiffness = scene->contact.alpha;
   const bool alone = layers(scene, s) <= 1;
   double worst = 0, stiffness = 0;
   const struct disc_spec *before = NULL;
@@ -118,8 +120,8 @@ static void advise_overlap(const struct scene *scene, const struct sediment *s)
     if (!is_drawn(scene, s, disc)) continue;
     if (before && before->radius == disc->radius && before->density == disc->density) continue;
     const double load = load_on(scene, s, disc, alone), radius = disc->radius;
-    worst = fmax(worst, overlap_under(load, law.stiffness, radius, alone) / radius);
-    stiffness = fmax(stiffness, load / (scene->contact.alpha * lens_at(radius, wanted_overlap * radius, alone).area));
+    worst = fmax(worst, overlap_under(load, &law, radius, alone) / radius);
+    stiffness = fmax(stiffness, load / force_at(&unit, wanted_overlap * radius, radius, alone));
     before = disc;
   }
   if (worst <= (alone ? most_alone : most_in_pile)) return;

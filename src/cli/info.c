@@ -7,7 +7,7 @@
 #include "case/case_keys.h"
 #include "case/case_overlaps.h"
 #include "case/case_tree.h"
-#include "contact/law.h"
+#include "contact/substeps.h"
 #include "fluid/sweep.h"
 #include "sim/blocked.h"
 #include "sim/estimate.h"
@@ -227,7 +227,13 @@ static void print_contacts(const struct scene *scene, const struct stages *stage
     printf("sub-steps    %d a step, as the case says\n", scene->contact.substeps);
   else if (stages->substeps)
     printf("sub-steps    chosen each step for %g of them a contact; %d at an overlap of one cell\n",
-           scene->contact.steps_per_contact, plan_largest_substeps(scene));
+           scene->contact.steps_per_contact, substeps_by_lens(scene));
+  else if (substeps_by_lens(scene) > 1)
+    printf("sub-steps    1: areas by cells are known once a step\n"
+           "  note: by lens contacts this stiff would take up to %d; with one they damp otherwise than they should, "
+           "and give way "
+           "further; use contact.area: lens, or a smaller contact.stiffness\n",
+           substeps_by_lens(scene));
   else
     printf("sub-steps    1: a contact lasts more than %g steps\n", scene->contact.steps_per_contact);
 }

@@ -1,41 +1,50 @@
-/* The normal contact force (10): proportional to the overlap area, damped, never attractive. */
+/* Contact law: the impulse of a contact over a time h, from its kinematics and its state.
+ *
+ * Normal force (10): F = max(0, F_s + eta v), F_s the spring of the law, v the speed of approach, never attractive, limited by the
+ * energy stored (state.h). eta = 2 eta_0 sqrt(k_n m_eff), 1/m_eff = 1/m_a + 1/m_b; (10) prints 1/m_eff under the root, which is not a
+ * damping coefficient (contact.damping_form: printed).
+ *
+ * A new law is a function of type contact_spring and a row of the table in law.c. */
 #ifndef DELBM_CONTACT_LAW_H
 #define DELBM_CONTACT_LAW_H
 
-#include "model/scene.h"
+#include "contact/geometry.h"
+#include "contact/state.h"
 
-#include <math.h>
+struct contact_law;
+
+/* Force of a spring, and its derivative by the overlap. */
+struct spring {
+  double force, stiffness;
+};
+typedef struct spring contact_spring(const struct contact_law *law, const struct kinematics *kinematics);
 
 struct contact_law {
-  double stiffness; /* alpha k_n: force per overlap area */
+  contact_spring *spring;
+  double stiffness; /* alpha k_n */
   double k;         /* k_n */
   double damping;   /* eta_0 */
   enum contact_damping form;
 };
 
-static inline struct contact_law contact_law_of(const struct scene *scene)
-{
-  return (struct contact_law){.stiffness = scene->contact.alpha * scene->contact.stiffness,
-                              .k = scene->contact.stiffness,
-                              .damping = scene->contact.damping,
-                              .form = scene->contact.damping_form};
-}
+/* On b; on a the opposite. Tangential: along t (geometry.h). */
+struct contact_impulse {
+  double normal, tangential;
+};
 
-/* eta, for two bodies of inverse masses that sum to `inverse_mass` = 1/m_i + 1/m_j (zero for one that cannot give way).
- * */
-static inline double contact_damping(const struct contact_law *law, double inverse_mass)
-{
-  if (inverse_mass <= 0) return 0;
-  /* as printed, the mass stands upside down under the root: not a damping coefficient, offered for comparison */
-  const double under_root = law->form == DAMPING_CRITICAL ? law->k / inverse_mass : law->k * inverse_mass;
-  return 2 * law->damping * sqrt(under_root);
-}
+struct contact_law contact_law_of(const struct scene *scene);
 
-/* Force that pushes the two apart, for overlap `area`, approach velocity `closing` and `damping` eta. */
-static inline double contact_force(const struct contact_law *law, double area, double closing, double damping)
-{
-  if (area <= 0) return 0;
-  return fmax(0, law->stiffness * area + damping * closing);
-}
+/* eta, for two bodies of inverse masses that sum to `inverse_mass`; 0 for two that cannot move. */
+double contact_damping(const struct contact_law *law, double inverse_mass);
+
+/* Impulse over the time h. Leaves the state for the next sub-step. */
+struct contact_impulse contact_law(const struct contact_law *law, struct contact_state *state,
+                                   const struct kinematics *kinematics, double h);
+
+/* The spring of two bodies (b infinite: a side) at this overlap of exact lens area. */
+struct spring contact_spring_at(const struct contact_law *law, const double radius[2], double overlap);
+
+/* Energy of that spring at this overlap. */
+double contact_energy(const struct contact_law *law, const double radius[2], double overlap);
 
 #endif

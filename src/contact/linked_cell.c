@@ -14,24 +14,23 @@ static double largest_radius(const struct discs *discs)
 }
 
 bool linked_cell_create(struct linked_cell *l, const struct scene *scene, const struct discs *discs, double edge,
-                        double skin, struct status *status)
+                        double within, struct status *status)
 {
   const char *what = "the linked cells";
-  const double reach = 2 * largest_radius(discs) + skin;
-  *l = (struct linked_cell){.skin = skin};
-  if (!(edge > 0)) edge = reach;
+  const double furthest = 2 * largest_radius(discs) + within;
+  *l = (struct linked_cell){.within = within};
+  if (!(edge > 0)) edge = furthest;
   for (int axis = 0; axis < 2; axis++) {
     l->size[axis] = scene->domain.size[axis];
     l->periodic[axis] = scene_is_periodic(scene, axis);
     l->cells[axis] = (int)fmax(1, floor(l->size[axis] / edge));
     l->edge[axis] = l->size[axis] / l->cells[axis];
   }
-  l->span = (int)ceil(reach / fmin(l->edge[0], l->edge[1]));
+  l->span = (int)ceil(furthest / fmin(l->edge[0], l->edge[1]));
   const size_t cells = (size_t)l->cells[0] * (size_t)l->cells[1];
   if ((l->start = memory_allocate(cells + 1, sizeof *l->start, what, status)) &&
       (l->discs = memory_allocate(discs->count, sizeof *l->discs, what, status)) &&
-      (l->cell = memory_allocate(discs->count, sizeof *l->cell, what, status)) &&
-      (l->rows = memory_allocate((size_t)l->cells[1], sizeof *l->rows, what, status)))
+      (l->cell = memory_allocate(discs->count, sizeof *l->cell, what, status)))
     return true;
   linked_cell_destroy(l);
   return false;
@@ -39,8 +38,6 @@ bool linked_cell_create(struct linked_cell *l, const struct scene *scene, const 
 
 void linked_cell_destroy(struct linked_cell *l)
 {
-  for (int r = 0; l->rows && r < l->cells[1]; r++) free(l->rows[r].pairs);
-  free(l->rows);
   free(l->start);
   free(l->discs);
   free(l->cell);
@@ -54,7 +51,7 @@ static int cell_along(const struct linked_cell *l, int axis, double at)
 }
 
 /* Discs by cell, in each by index. The end of cell c doubles as the place where the next of c + 1 is entered. */
-static void sort_discs(struct linked_cell *l, const struct discs *discs)
+void linked_cell_sort(struct linked_cell *l, const struct discs *discs)
 {
   const size_t cells = (size_t)l->cells[0] * (size_t)l->cells[1];
   memset(l->start, 0, (cells + 1) * sizeof *l->start);
@@ -76,24 +73,18 @@ static double nearest(const struct linked_cell *l, int axis, double d)
   return nearest_image(d, l->size[axis], l->periodic[axis]);
 }
 
-static bool add_pair(struct pair_batch *row, uint32_t i, uint32_t k, struct status *status)
-{
-  if (!memory_grow(&row->pairs, &row->capacity, row->count + 1, sizeof *row->pairs, "the pairs", status)) return false;
-  row->pairs[row->count++] = (struct near_pair){.a = i < k ? i : k, .b = i < k ? k : i};
-  return true;
-}
-
 /* Pairs between disc i and the discs of a cell; within one cell each pair once. */
-static bool search_cell(struct linked_cell *l, const struct discs *d, struct pair_batch *row, uint32_t i, size_t cell,
-                        struct status *status)
+static bool search_cell(const struct linked_cell *l, const struct discs *d, struct pair_batch *row, uint32_t i,
+                        size_t cell, struct status *status)
 {
   const bool own = l->cell[i] == cell;
   for (size_t at = l->start[cell]; at < l->start[cell + 1]; at++) {
     const uint32_t k = l->discs[at];
     if (own && k <= i) continue;
     const double dx = nearest(l, 0, d->x[k] - d->x[i]), dy = nearest(l, 1, d->y[k] - d->y[i]);
-    const double near = d->radius[i] + d->radius[k] + l->skin;
-    if (dx * dx + dy * dy < near * near && !add_pair(row, i, k, status)) return false;
+    const double near = d->radius[i] + d->radius[k] + l->within;
+    const struct pair pair = i < k ? (struct pair){i, k} : (struct pair){k, i};
+    if (dx * dx + dy * dy < near * near && !pair_batch_add(row, &pair, status)) return false;
   }
   return true;
 }
@@ -106,12 +97,11 @@ static int step_along(const struct linked_cell *l, int axis, int cell, int by)
   return l->periodic[axis] ? (to % n + n) % n : -1;
 }
 
-/* Half of the cells around: those above, and to the right in the same row. Where a periodic axis has too few cells to
- * tell its two sides apart a pair may be met twice; the join makes it one. */
-static bool search_row(struct linked_cell *l, const struct discs *d, int y, struct status *status)
+/* Half of the cells around: those above, and to the right in the same row. Where a periodic axis has too few cells to tell its two
+ * sides apart a pair may be found twice. */
+bool linked_cell_search(const struct linked_cell *l, const struct discs *d, int y, struct pair_batch *row,
+                        struct status *status)
 {
-  struct pair_batch *row = &l->rows[y];
-  row->count = 0;
   for (int x = 0; x < l->cells[0]; x++) {
     const size_t cell = (size_t)y * (size_t)l->cells[0] + (size_t)x;
     for (size_t at = l->start[cell]; at < l->start[cell + 1]; at++)
@@ -124,20 +114,4 @@ static bool search_row(struct linked_cell *l, const struct discs *d, int y, stru
         }
   }
   return true;
-}
-
-bool linked_cell_find(struct linked_cell *l, const struct discs *d, struct pair_list *list, struct team *team)
-{
-  struct status status;
-#pragma omp single
-  sort_discs(l, d);
-#pragma omp for schedule(dynamic, 1)
-  for (int y = 0; y < l->cells[1]; y++)
-    if (!search_row(l, d, y, &status)) team_fail(team, &status);
-#pragma omp single
-  {
-    if (!team->failed && !overlap_join(list, l->rows, (size_t)l->cells[1], d->count, &status)) team_fail(team, &status);
-    team_decide(team, &l->leave);
-  }
-  return !l->leave;
 }

@@ -1,7 +1,7 @@
 /* Exchange: the momentum that fluid and discs hand each other, solved for the discs' new velocities (equations: exchange.c).
  *
  * In a step, stage_exchange finds for each disc the change of its velocity without contacts and the response K of its
- * velocity to an impulse; contacts act through K (sim/contacts.h); exchange_finish then sets the new velocity, the forces that
+ * velocity to an impulse; contacts act through K (contact/contacts.h); exchange_finish then sets the new velocity, the forces that
  * made it, and the velocity of the surface that the sweep imposes on the fluid. */
 #ifndef DELBM_COUPLING_EXCHANGE_H
 #define DELBM_COUPLING_EXCHANGE_H

@@ -18,9 +18,10 @@ static void move_disc(const struct contacts *c, struct exchange *e, struct discs
   exchange_finish(e, d, i);
   d->angle[i] += d->omega[i];
   if (d->motion[i] == DISC_FIXED) return;
-  const bool followed = c->substeps > 1 && c->is_followed[i];
-  d->x[i] = into_box(c->scene, 0, followed ? c->within.x[i] : d->x[i] + d->vx[i]);
-  d->y[i] = into_box(c->scene, 1, followed ? c->within.y[i] : d->y[i] + d->vy[i]);
+  double to[2] = {d->x[i] + d->vx[i], d->y[i] + d->vy[i]};
+  contacts_moved(c, i, to);
+  d->x[i] = into_box(c->scene, 0, to[0]);
+  d->y[i] = into_box(c->scene, 1, to[1]);
 }
 
 static bool too_fast(const struct discs *d, size_t i)

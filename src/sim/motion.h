@@ -3,7 +3,7 @@
 #ifndef DELBM_SIM_MOTION_H
 #define DELBM_SIM_MOTION_H
 
-#include "sim/contacts.h"
+#include "contact/contacts.h"
 
 /* Called by all threads of a parallel region or outside of one; each disc is one thread's own. Fails when a disc's speed
  * is not finite or above Mach 0.6, or when a free disc has left the box. */

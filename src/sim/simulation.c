@@ -50,11 +50,12 @@ static bool create_discs(struct simulation *s, struct status *status)
 {
   if (!s->stages.exchange) return true;
   const bool moving = s->stages.occupation == OCCUPATION_EVERY_STEP;
+  const struct contact_needs needs = {s->stages.pairs, s->stages.walls, s->stages.substeps};
   return discs_create(&s->discs, s->scene, status) &&
-         occupation_create(&s->occupations[0], s->scene, &s->discs, s->stages.reach, status) &&
-         (!moving || occupation_create(&s->occupations[1], s->scene, &s->discs, s->stages.reach, status)) &&
+         occupation_create(&s->occupations[0], s->scene, &s->discs, status) &&
+         (!moving || occupation_create(&s->occupations[1], s->scene, &s->discs, status)) &&
          exchange_create(&s->exchange, s->scene, &s->discs, status) &&
-         contacts_create(&s->contacts, s->scene, &s->stages, &s->discs, status);
+         contacts_create(&s->contacts, s->scene, needs, &s->discs, status);
 }
 
 /* Occupation where the discs are. A stage is shared out among the threads of the region around it, which must be of our
@@ -508,7 +509,7 @@ void simulation_report(struct simulation *s, struct simulation_report *report)
                                        .mass_drift = s->torn ? NAN : fabs(totals.excess_mass) / cells,
                                        .momentum_drift = momentum_drift(s),
                                        .max_mach = s->max_mach,
-                                       .max_substeps = s->stages.exchange ? s->contacts.most_substeps : 1};
+                                       .max_substeps = s->stages.exchange ? s->contacts.max_substeps : 1};
   for (int axis = 0; axis < 2; axis++) /* with half of the force of the coming step, as in the fields */
     report->mean_velocity[axis] = (momentum[axis] + (mass * force.mass[axis] + cells * force.uniform[axis]) / 2) / mass;
   tuning_text(&s->tuning, report->blocking);

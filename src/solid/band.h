@@ -6,17 +6,15 @@
 #include "solid/occupation.h"
 #include "solid/solid_kernel.h"
 
-/* What a run is besides its cells: those that make discs candidates, the run's own widened by the reach; where its eps
- * begin; and where place[] keeps its number in the band. */
-struct candidate {
-  int32_t reach_first, reach_end;
+/* Of a run of the band: the index of its first fraction, and its index in place[]. */
+struct run_draft {
   size_t cell, place;
 };
 
 struct band_draft {
-  struct candidate *candidates; /* of each run of the band */
-  double *eps;                  /* of all cells, disc by disc */
-  size_t candidate_capacity, eps_capacity;
+  struct run_draft *runs; /* of each run of the band */
+  double *eps;            /* of all cells, disc by disc */
+  size_t run_capacity, eps_capacity;
 };
 
 /* Row `at` of `n`, from up to n rows beyond either side of a periodic box. */
@@ -29,8 +27,7 @@ static inline int band_wrap(int at, int n)
 bool band_paint(struct occupation *occupation, int index, const struct discs *discs, struct band_draft *draft,
                 struct status *status);
 
-/* The shares of cells with several owners, and the pairs that meet in the band. Fails if memory runs out. */
-bool band_share(struct occupation *occupation, int index, const struct discs *discs, const struct band_draft *draft,
-                struct status *status);
+/* The shares of cells with several owners. */
+void band_share(struct occupation *occupation, int index, const struct band_draft *draft);
 
 #endif

@@ -33,23 +33,17 @@ static bool allocate(struct occupation *o, size_t rows, struct status *status)
          (o->order = memory_allocate(n, sizeof *o->order, what, status)) &&
          (o->band_start = memory_allocate(bands + 1, sizeof *o->band_start, what, status)) &&
          (o->stale = memory_allocate(bands, sizeof *o->stale, what, status)) &&
-         (o->bands = memory_allocate(bands, sizeof *o->bands, what, status)) &&
-         (o->batches = memory_allocate(bands, sizeof *o->batches, what, status));
+         (o->bands = memory_allocate(bands, sizeof *o->bands, what, status));
 }
 
-bool occupation_create(struct occupation *o, const struct scene *scene, const struct discs *discs, int reach,
+bool occupation_create(struct occupation *o, const struct scene *scene, const struct discs *discs,
                        struct status *status)
 {
   *o = (struct occupation){.size = {scene->domain.size[0], scene->domain.size[1]},
                            .periodic = {scene_is_periodic(scene, 0), scene_is_periodic(scene, 1)},
                            .form = scene->coupling.form,
                            .viscosity = scene->fluid.viscosity,
-                           .reach = reach,
-                           .minimum = 0.95,
                            .kernel = solid_kernel_find(scene->fluid.kernel),
-                           .search = scene->contact.search != SEARCH_GRID ? PAIRS_NONE
-                                     : scene->contact.area == AREA_CELLS  ? PAIRS_WITH_AREA
-                                                                          : PAIRS_ONCE,
                            .discs = discs->count,
                            .band_count = (scene->domain.size[1] + BAND_ROWS - 1) / BAND_ROWS};
   size_t rows = 0;
@@ -71,17 +65,16 @@ void occupation_destroy(struct occupation *o)
 {
   for (int k = 0; o->bands && k < o->band_count; k++) {
     free(o->bands[k].runs);
-    if (o->batches) free(o->batches[k].pairs);
     free(o->bands[k].share);
     free(o->bands[k].sums);
   }
   for (size_t t = 0; t < o->draft_count; t++) {
-    free(o->drafts[t].candidates);
+    free(o->drafts[t].runs);
     free(o->drafts[t].eps);
   }
-  void *const arrays[] = {o->x,          o->y,       o->angle,    o->damping,   o->column, o->row,   o->rows,
-                          o->moved,      o->was_row, o->was_rows, o->first_row, o->place,  o->order, o->band_start,
-                          o->band_discs, o->stale,   o->bands,    o->batches,   o->drafts};
+  void *const arrays[] = {o->x,     o->y,          o->angle,      o->damping,  o->column,    o->row,
+                          o->rows,  o->moved,      o->was_row,    o->was_rows, o->first_row, o->place,
+                          o->order, o->band_start, o->band_discs, o->stale,    o->bands,     o->drafts};
   for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; k++) free(arrays[k]);
   *o = (struct occupation){0};
 }
@@ -153,7 +146,7 @@ struct band_walk {
 
 static struct band_walk walk_bands(const struct occupation *o, int row, int rows)
 {
-  struct band_walk walk = {.y = row - o->reach, .high = row + rows - 1 + o->reach, .opening = -1, .previous = -1};
+  struct band_walk walk = {.y = row, .high = row + rows - 1, .opening = -1, .previous = -1};
   const int ny = o->size[1];
   if (!o->periodic[1]) {
     if (walk.y < 0) walk.y = 0;
@@ -247,7 +240,10 @@ bool stage_occupation(struct occupation *o, const struct discs *discs, struct te
 #pragma omp for schedule(static)
   for (int k = 0; k < o->band_count; k++) {
     struct band_draft *draft = &o->drafts[omp_get_thread_num()];
-    if (o->stale[k] && (!band_paint(o, k, discs, draft, &status) || !band_share(o, k, discs, draft, &status)))
+    if (!o->stale[k]) continue;
+    if (band_paint(o, k, discs, draft, &status))
+      band_share(o, k, draft);
+    else
       team_fail(team, &status);
   }
 #pragma omp single

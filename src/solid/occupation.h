@@ -12,8 +12,7 @@
  *                (disc_area.h, area.h), of wide discs for the rim only: where it ends follows from the chords of the row's two lines,
  *                so that no list of boundary cells need be kept from step to step, as the modified Verlet list does.
  *                Runs that overlap share cells; there B follows from the total eps = min(1, sum eps_p), of which owner
- *                p has the share w_p B with w_p = eps_p/sum eps (22), for any number of owners. Two discs that share a
- *                cell are a candidate for contact.
+ *                p has the share w_p B with w_p = eps_p/sum eps (22), for any number of owners.
  *
  * A band's runs, and the shares of cells in its rows, are written by the one thread that has the band: no races. All
  * orders (discs along x, runs in a row, owners of a cell, bands) follow from positions and indices alone, never from
@@ -31,26 +30,6 @@
 enum { BAND_ROWS = 16 };
 
 struct solid_kernel;
-
-/* Two discs, lower index first, that are within reach of each other, and what (23) adds to their overlap area in a row.
- */
-struct near_pair {
-  uint32_t a, b;
-  double cells_area;
-};
-
-/* What occupation notes of discs that meet in a row. */
-enum pair_search {
-  PAIRS_NONE,      /* nothing: another search finds them */
-  PAIRS_ONCE,      /* each pair with a gap below the reach, in the row of the place between them */
-  PAIRS_WITH_AREA, /* each in every row where they meet, with the area by cells */
-};
-
-/* Pairs found together, in the order found. */
-struct pair_batch {
-  struct near_pair *pairs;
-  size_t count, capacity;
-};
 
 struct band {
   struct run *runs;
@@ -71,9 +50,6 @@ struct occupation {
   bool periodic[2];
   enum coupling_form form;
   double viscosity;
-  int reach;      /* cells by which runs are widened in the search for pairs, 0 or 1 */
-  double minimum; /* A_m of (23) */
-  enum pair_search search;
 
   const struct solid_kernel *kernel;
 
@@ -94,15 +70,14 @@ struct occupation {
   size_t band_discs_capacity;
   uint8_t *stale; /* of each band: to be painted anew */
   struct band *bands;
-  struct pair_batch *batches; /* of each band */
-  struct band_draft *drafts;  /* of each thread: what is needed of a band only while it is painted */
+  struct band_draft *drafts; /* of each thread: what is needed of a band only while it is painted */
   size_t draft_count;
   int band_count;
   bool leave_unlisted, leave_unpainted; /* after the listing of bands, after the painting (team.h) */
 };
 
-/* Sets up tables for the scene's discs. `reach` as above. */
-bool occupation_create(struct occupation *occupation, const struct scene *scene, const struct discs *discs, int reach,
+/* Sets up tables for the scene's discs. */
+bool occupation_create(struct occupation *occupation, const struct scene *scene, const struct discs *discs,
                        struct status *status);
 void occupation_destroy(struct occupation *occupation);
 

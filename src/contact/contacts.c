@@ -1,0 +1,365 @@
+/* Contacts.
+ *
+ * Before this stage the exchange has solved, for each disc, the change of velocity over the step without contacts, dV, and its
+ * response K to an impulse (coupling/exchange.h): with the impulse J = (J_x, J_y, J_omega) of its contacts the disc ends the step at
+ * V + dV + K J. This stage finds J; the motion of the discs (sim/motion.h) follows it.
+ *
+ * List. A contact is a pair of discs, or a disc and a side that is not periodic. A list is made each step of those that can act in it:
+ * pairs whose gap is below `within` (1 cell with sub-steps, more than two discs below Mach 0.6 can close in a step; 0 with one
+ * sub-step, since the force is then that of the start), taken from the neighbours of pairs.h, and sides as near. Pairs by (a, b), then
+ * sides by disc: the order depends on positions and indices alone.
+ *
+ * Sub-steps. Stiff contacts take n of them, of length h = 1/n: enough for the stiffest contact of the list (substeps.h). Within the
+ * step a disc accelerates at the constant rate dV but for contacts. A leapfrog, whose velocities lie half a sub-step before its
+ * positions:
+ *   J_k = law(x_k, v_k, (h_last + h)/2),   v' = v + h dV + K sum J_k,   x' = x + h v',
+ * where the impulse lasts from the middle of the last sub-step to the middle of this one; with h alone a change of h would gain energy.
+ * The last sub-step ends at the very velocity that the solve gives for the sum of all impulses. With n = 1 discs stay where they are
+ * here, and their motion does all. Areas by cells are known once a step: with them n = 1.
+ *
+ * State. What a contact passes on from step to step (state.h) is saved, in the order of the list, for contacts that have acted, and is
+ * part of a checkpoint.
+ *
+ * Threads. Each contact's impulse is written to the contact by the thread that has the contact, and one thread adds the impulses to
+ * the discs in the order of the list; then each disc is moved by one thread. No two threads write the same number, and the bits are the
+ * same for any number of threads. A short list is worked on by one thread, in a region of its own, since barriers would cost more. */
+#include "contact/contacts.h"
+
+#include "base/memory.h"
+#include "contact/cells_area.h"
+#include "contact/substeps.h"
+
+#include <math.h>
+#include <omp.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { SHORT = 64, MAX_SUBSTEPS = 1000000 };
+
+struct contact {
+  uint32_t a, b; /* discs; b from contact_sides on: a side */
+  bool is_new;   /* no state was saved of it */
+  double inverse_mass;
+  double damping; /* eta */
+  double cells_area;
+  struct wrench on_a, on_b; /* impulse in this sub-step; on_b stays 0 with a side */
+  struct contact_state state;
+};
+
+static bool allocate_moving(struct contacts *c, size_t discs, struct status *status)
+{
+  const char *what = "the contacts";
+  return (c->moving = memory_allocate(discs, sizeof *c->moving, what, status)) &&
+         (c->is_moving = memory_allocate(discs, sizeof *c->is_moving, what, status)) &&
+         (c->within_step.x = memory_allocate(discs, sizeof *c->within_step.x, what, status)) &&
+         (c->within_step.y = memory_allocate(discs, sizeof *c->within_step.y, what, status)) &&
+         (c->within_step.vx = memory_allocate(discs, sizeof *c->within_step.vx, what, status)) &&
+         (c->within_step.vy = memory_allocate(discs, sizeof *c->within_step.vy, what, status)) &&
+         (c->within_step.omega = memory_allocate(discs, sizeof *c->within_step.omega, what, status)) &&
+         (c->impulse = memory_allocate(discs, sizeof *c->impulse, what, status));
+}
+
+bool contacts_create(struct contacts *c, const struct scene *scene, struct contact_needs needs,
+                     const struct discs *discs, struct status *status)
+{
+  const bool cells = needs.pairs && scene->contact.area == AREA_CELLS;
+  *c = (struct contacts){.scene = scene,
+                         .needs = needs,
+                         .law = contact_law_of(scene),
+                         .within = cells            ? cells_area_gap
+                                   : needs.substeps ? 1
+                                                    : 0,
+                         .scratch_size = cells ? cells_area_scratch(discs) : 0,
+                         .substeps = 1,
+                         .max_substeps = 1,
+                         .placed = true};
+  if ((!needs.substeps || allocate_moving(c, discs->count, status)) &&
+      (!needs.pairs || pairs_create(&c->pairs, scene, discs, c->within, status)))
+    return true;
+  contacts_destroy(c);
+  return false;
+}
+
+void contacts_destroy(struct contacts *c)
+{
+  pairs_destroy(&c->pairs);
+  states_destroy(&c->states);
+  void *const arrays[] = {
+      c->list,          c->scratch,        c->moving,         c->is_moving,         c->within_step.x,
+      c->within_step.y, c->within_step.vx, c->within_step.vy, c->within_step.omega, c->impulse};
+  for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; k++) free(arrays[k]);
+  *c = (struct contacts){0};
+}
+
+void contacts_placed(struct contacts *c)
+{
+  c->placed = true;
+}
+
+bool contacts_store(struct contacts *c, size_t discs, struct store *store, struct status *status)
+{
+  uint8_t placed = c->placed;
+  const bool stored =
+      store_mark(store, "contacts", status) && store_bytes(store, &c->last_substep, sizeof c->last_substep, status) &&
+      store_bytes(store, &c->max_substeps, sizeof c->max_substeps, status) &&
+      store_bytes(store, &placed, sizeof placed, status) && states_store(&c->states, discs, store, status);
+  c->placed = placed;
+  if (stored && !(c->last_substep >= 0 && c->last_substep <= 1))
+    return status_fail(status, DELBM_IO, "cannot read %s: a sub-step of %g steps", store->path, c->last_substep);
+  return stored;
+}
+
+static double inverse_mass(const struct discs *d, uint32_t i)
+{
+  return d->motion[i] == DISC_FREE ? 1 / d->mass[i] : 0;
+}
+
+/* Adds a contact to the list, whose saved state is looked for from *at on. */
+static bool add_contact(struct contacts *c, const struct discs *d, uint32_t a, uint32_t b, size_t *at,
+                        struct status *status)
+{
+  const double inverse = inverse_mass(d, a) + (contact_is_with_side(b) ? 0 : inverse_mass(d, b));
+  if (inverse <= 0) return true;
+  if (!memory_grow(&c->list, &c->capacity, c->count + 1, sizeof *c->list, "the contacts", status)) return false;
+  const struct contact_state *saved = states_next(&c->states, at, a, b);
+  struct contact *contact = &c->list[c->count++];
+  *contact = (struct contact){.a = a, .b = b, .is_new = !saved, .inverse_mass = inverse};
+  if (saved) contact->state = *saved;
+  return true;
+}
+
+static bool add_pairs(struct contacts *c, const struct discs *d, size_t *at, struct status *status)
+{
+  const int *size = c->scene->domain.size;
+  const bool periodic[2] = {scene_is_periodic(c->scene, 0), scene_is_periodic(c->scene, 1)};
+  for (size_t k = 0; k < c->pairs.count; k++) {
+    const uint32_t a = c->pairs.pairs[k].a, b = c->pairs.pairs[k].b;
+    const double dx = nearest_image(d->x[b] - d->x[a], size[0], periodic[0]);
+    const double dy = nearest_image(d->y[b] - d->y[a], size[1], periodic[1]);
+    const double near = d->radius[a] + d->radius[b] + c->within;
+    if (dx * dx + dy * dy < near * near && !add_contact(c, d, a, b, at, status)) return false;
+  }
+  return true;
+}
+
+static bool add_sides(struct contacts *c, const struct discs *d, size_t *at, struct status *status)
+{
+  const double nx = c->scene->domain.size[0], ny = c->scene->domain.size[1];
+  for (uint32_t i = 0; i < d->count; i++) {
+    const double x = d->x[i], y = d->y[i], near = d->radius[i] + c->within;
+    const bool clear = (x >= near) & (nx - x >= near) & (y >= near) & (ny - y >= near);
+    for (enum side_name side = 0; side < SIDE_COUNT && !clear; side++)
+      if (c->scene->domain.side[side].type != SIDE_PERIODIC &&
+          scene_distance_to_side(c->scene, side, (const double[2]){x, y}) < near &&
+          !add_contact(c, d, i, contact_sides + side, at, status))
+        return false;
+  }
+  return true;
+}
+
+/* The list of the step; by one thread. */
+static bool make_list(struct contacts *c, struct discs *d, struct status *status)
+{
+  const size_t bytes = d->count * sizeof(double), threads = (size_t)omp_get_num_threads();
+  size_t at = 0;
+  memset(d->contact_fx, 0, bytes);
+  memset(d->contact_fy, 0, bytes);
+  memset(d->contact_torque, 0, bytes);
+  for (size_t k = 0; k < c->moving_count; k++) c->is_moving[c->moving[k]] = 0;
+  c->moving_count = c->count = 0;
+  c->substeps = 1;
+  return add_pairs(c, d, &at, status) && (!c->needs.sides || add_sides(c, d, &at, status)) &&
+         states_reserve(&c->states, c->count, status) &&
+         memory_grow(&c->scratch, &c->scratch_capacity, threads * c->scratch_size, sizeof *c->scratch, "the contacts",
+                     status);
+}
+
+static bool is_by_cells(const struct contacts *m, const struct contact *c)
+{
+  return m->scratch_size > 0 && !contact_is_with_side(c->b);
+}
+
+/* Prepares a contact for the step, and returns the sub-steps that it needs at the overlap that it may reach within the step. */
+static int prepare(const struct contacts *m, const struct discs *d, const struct exchange *e, struct contact *c)
+{
+  const struct disc_motions start = {d->x, d->y, d->vx, d->vy, d->omega};
+  struct kinematics k = kinematics_of(m->scene, d, c->a, c->b, &start);
+  const double overlap = k.radius[0] + (contact_is_with_side(c->b) ? 0 : k.radius[1]) - k.distance;
+  c->damping = contact_damping(&m->law, c->inverse_mass);
+  if (c->is_new && m->placed) c->state.stored = contact_energy(&m->law, k.radius, overlap);
+  if (is_by_cells(m, c))
+    c->cells_area = cells_area(m->scene, d, c->a, c->b, m->scratch + (size_t)omp_get_thread_num() * m->scratch_size);
+  if (!m->needs.substeps) return 1;
+  const double reached = fmax(0, overlap) + fmax(0, k.approach_speed);
+  kinematics_respond(&k, e, c->a, c->b, 0);
+  return substeps_needed(m->scene, contact_spring_at(&m->law, k.radius, reached).stiffness, c->damping, k.compliance);
+}
+
+/* Prepares all contacts and finds how many sub-steps the step takes. */
+static void prepare_all(struct contacts *c, const struct discs *d, const struct exchange *e)
+{
+  int max = 1;
+#pragma omp for schedule(static) nowait
+  for (size_t k = 0; k < c->count; k++) {
+    const int needed = prepare(c, d, e, &c->list[k]);
+    if (needed > max) max = needed;
+  }
+#pragma omp critical(delbm_contacts)
+  if (max > c->substeps) c->substeps = max;
+#pragma omp barrier
+}
+
+/* A step of more sub-steps than a case may ask for would look like a program that hangs. */
+static bool check_substeps(const struct contacts *c, struct team *team)
+{
+  if (c->substeps <= MAX_SUBSTEPS) return true;
+  struct status status;
+  status_fail(
+      &status, DELBM_FAILED,
+      "contacts so stiff need %d sub-steps a step, more than %d: use a smaller contact.stiffness, contact.alpha "
+      "or contact.damping, or set contact.substeps",
+      c->substeps, MAX_SUBSTEPS);
+  team_fail(team, &status);
+  return false;
+}
+
+static void start_moving(struct contacts *c, const struct discs *d, uint32_t i)
+{
+  if (contact_is_with_side(i) || c->is_moving[i]) return;
+  c->is_moving[i] = 1;
+  c->moving[c->moving_count++] = i;
+  c->within_step.x[i] = d->x[i];
+  c->within_step.y[i] = d->y[i];
+  c->within_step.vx[i] = d->vx[i];
+  c->within_step.vy[i] = d->vy[i];
+  c->within_step.omega[i] = d->omega[i];
+  c->impulse[i] = (struct wrench){0};
+}
+
+/* Lists the discs that take sub-steps: none if one sub-step suffices. By one thread. */
+static void start_all(struct contacts *c, const struct discs *d)
+{
+  if (c->substeps > c->max_substeps) c->max_substeps = c->substeps;
+  for (size_t k = 0; k < c->count && c->substeps > 1; k++) {
+    start_moving(c, d, c->list[k].a);
+    start_moving(c, d, c->list[k].b);
+  }
+}
+
+/* The impulse of a contact over `duration`, in a sub-step of length h, as wrenches on both bodies about their centres. */
+static void find_impulse(const struct contacts *m, const struct discs *d, const struct exchange *e,
+                         const struct disc_motions *at, double duration, double h, struct contact *c)
+{
+  struct kinematics k = kinematics_of(m->scene, d, c->a, c->b, at);
+  if (is_by_cells(m, c)) k.lens.area = c->cells_area;
+  if (k.lens.area > 0) kinematics_respond(&k, e, c->a, c->b, h);
+  k.damping = c->damping;
+  const struct contact_impulse j = contact_law(&m->law, &c->state, &k, duration);
+  const double fx = j.normal * k.nx - j.tangential * k.ny, fy = j.normal * k.ny + j.tangential * k.nx;
+  c->on_a = (struct wrench){-fx, -fy, -k.arm[0] * j.tangential};
+  if (!contact_is_with_side(c->b)) c->on_b = (struct wrench){fx, fy, -k.arm[1] * j.tangential};
+}
+
+static void add_to_disc(struct discs *d, uint32_t i, const struct wrench *w)
+{
+  d->contact_fx[i] += w->fx;
+  d->contact_fy[i] += w->fy;
+  d->contact_torque[i] += w->torque;
+}
+
+static void add_to_substep(struct contacts *m, uint32_t i, const struct wrench *w)
+{
+  m->impulse[i].fx += w->fx;
+  m->impulse[i].fy += w->fy;
+  m->impulse[i].torque += w->torque;
+}
+
+/* Adds the impulses to their discs, or to what moves these in the sub-step; by one thread. */
+static void add_impulses(struct contacts *m, struct discs *d)
+{
+  for (size_t k = 0; k < m->count; k++) {
+    const struct contact *c = &m->list[k];
+    for (int end = 0; end < (contact_is_with_side(c->b) ? 1 : 2); end++) {
+      const uint32_t i = end ? c->b : c->a;
+      const struct wrench *w = end ? &c->on_b : &c->on_a;
+      if (m->substeps > 1)
+        add_to_substep(m, i, w);
+      else
+        add_to_disc(d, i, w);
+    }
+  }
+}
+
+/* Moves disc i through a sub-step of length h. */
+static void move_disc(struct contacts *c, const struct exchange *e, struct discs *d, double h, uint32_t i)
+{
+  struct disc_motions *at = &c->within_step;
+  const struct response *r = &e->response[i];
+  const struct wrench *impulse = &c->impulse[i];
+  double dv[3];
+  add_to_disc(d, i, impulse);
+  response_to(r, (const double[3]){impulse->fx, impulse->fy, impulse->torque}, dv);
+  at->vx[i] += h * r->dvx + dv[0];
+  at->vy[i] += h * r->dvy + dv[1];
+  at->omega[i] += h * r->domega + dv[2];
+  at->x[i] += h * at->vx[i];
+  at->y[i] += h * at->vy[i];
+  c->impulse[i] = (struct wrench){0};
+}
+
+static void save_states(struct contacts *m)
+{
+  states_clear(&m->states);
+  for (size_t k = 0; k < m->count; k++) {
+    const struct contact *c = &m->list[k];
+    if (c->state.stored > 0 || c->state.impulse > 0) states_add(&m->states, c->a, c->b, &c->state);
+  }
+  m->placed = false;
+}
+
+/* The step of the contacts in the list, by all threads of a region. */
+static void run_contacts(struct contacts *c, const struct exchange *e, struct discs *d, struct team *team)
+{
+  prepare_all(c, d, e);
+  if (!check_substeps(c, team)) return;
+#pragma omp single
+  start_all(c, d);
+  const double h = 1.0 / c->substeps;
+  const struct disc_motions start = {d->x, d->y, d->vx, d->vy, d->omega};
+  const struct disc_motions at = c->substeps > 1 ? c->within_step : start;
+  for (int n = 0; n < c->substeps; n++) {
+    const double duration = 0.5 * (c->last_substep + h);
+#pragma omp for schedule(static)
+    for (size_t k = 0; k < c->count; k++) find_impulse(c, d, e, &at, duration, h, &c->list[k]);
+#pragma omp single
+    {
+      add_impulses(c, d);
+      c->last_substep = h;
+    }
+#pragma omp for schedule(static)
+    for (size_t k = 0; k < c->moving_count; k++) move_disc(c, e, d, h, c->moving[k]);
+  }
+#pragma omp single
+  save_states(c);
+}
+
+bool stage_contact(struct contacts *c, const struct occupation *o, const struct exchange *e, struct discs *d,
+                   struct team *team)
+{
+  if (!c->needs.pairs && !c->needs.sides) return true;
+  if (c->needs.pairs && !pairs_update(&c->pairs, o, d, team)) return false;
+#pragma omp single
+  {
+    struct status status;
+    if (!make_list(c, d, &status)) {
+      team_fail(team, &status);
+    } else if (c->count <= SHORT) {
+#pragma omp parallel num_threads(1)
+      run_contacts(c, e, d, team);
+    }
+    team_decide(team, &c->leave);
+  }
+  if (c->leave) return false;
+  if (c->count > SHORT) run_contacts(c, e, d, team); /* a failure makes all leave at the end of the next stage */
+  return true;
+}

@@ -1,0 +1,64 @@
+#include "contact/law.h"
+
+#include "solid/lens.h"
+
+#include <math.h>
+
+/* (10): proportional to the overlap area. */
+static struct spring spring_of_area(const struct contact_law *law, const struct kinematics *k)
+{
+  return (struct spring){law->stiffness * k->lens.area, law->stiffness * k->lens.chord};
+}
+
+struct contact_law contact_law_of(const struct scene *scene)
+{
+  return (struct contact_law){.spring = spring_of_area,
+                              .stiffness = scene->contact.alpha * scene->contact.stiffness,
+                              .k = scene->contact.stiffness,
+                              .damping = scene->contact.damping,
+                              .form = scene->contact.damping_form};
+}
+
+double contact_damping(const struct contact_law *law, double inverse_mass)
+{
+  if (inverse_mass <= 0) return 0;
+  return 2 * law->damping * sqrt(law->form == DAMPING_CRITICAL ? law->k / inverse_mass : law->k * inverse_mass);
+}
+
+struct contact_impulse contact_law(const struct contact_law *law, struct contact_state *state,
+                                   const struct kinematics *k, double h)
+{
+  state_count_work(state, k->approach_speed);
+  if (k->lens.area <= 0) {
+    state->stored = 0;
+    return (struct contact_impulse){0};
+  }
+  const double spring = law->spring(law, k).force, force = fmax(0, spring + k->damping * k->approach_speed);
+  const double max = state_max_impulse(state, k->mean_speed, k->compliance, h * k->damping);
+  state->approach_speed = k->approach_speed;
+  state->spring = fmin(h * spring, max);
+  state->impulse = fmin(h * force, max);
+  return (struct contact_impulse){.normal = state->impulse};
+}
+
+struct spring contact_spring_at(const struct contact_law *law, const double radius[2], double overlap)
+{
+  struct kinematics k = {.radius = {radius[0], radius[1]}};
+  const bool side = isinf(radius[1]);
+  k.distance = (side ? radius[0] : radius[0] + radius[1]) - overlap;
+  k.lens = side ? lens_of_wall(radius[0], k.distance) : lens_of_discs(radius[0], radius[1], k.distance);
+  return law->spring(law, &k);
+}
+
+/* Simpson's rule in the root of the overlap, in which forces that grow as a power of it are smooth. */
+double contact_energy(const struct contact_law *law, const double radius[2], double overlap)
+{
+  enum { PARTS = 32 };
+  const double top = sqrt(fmax(0, overlap));
+  double sum = 0;
+  for (int k = 1; k <= PARTS; k++) {
+    const double root = top * k / PARTS, weight = k == PARTS ? 1 : k % 2 ? 4 : 2;
+    sum += weight * 2 * root * contact_spring_at(law, radius, root * root).force;
+  }
+  return sum * top / (3 * PARTS);
+}

@@ -1,0 +1,34 @@
+#include "contact/substeps.h"
+
+#include "contact/law.h"
+
+#include <math.h>
+
+int substeps_needed(const struct scene *scene, double stiffness, double damping, double inverse_mass)
+{
+  if (scene->contact.substeps > 0) return scene->contact.substeps;
+  const double half_period = M_PI / sqrt(fmax(stiffness * inverse_mass, 1e-300)); /* of the undamped contact */
+  const double for_spring = scene->contact.steps_per_contact / half_period;
+  const double for_damper = 2 * damping * inverse_mass; /* explicit damping overshoots from 2 on */
+  return (int)fmin(fmax(1, ceil(fmax(for_spring, for_damper))), 1e9);
+}
+
+int substeps_by_lens(const struct scene *scene)
+{
+  double min_mass = INFINITY, radius = 0;
+  const struct contact_law law = contact_law_of(scene);
+  for (size_t i = 0; i < scene->particles.count; i++) {
+    const struct disc_spec *disc = &scene->particles.discs[i];
+    if (disc->motion != DISC_FREE) continue;
+    min_mass = fmin(min_mass, disc->density * M_PI * disc->radius * disc->radius);
+    radius = fmax(radius, disc->radius);
+  }
+  if (!(min_mass < INFINITY)) return 1;
+  const double stiffness = contact_spring_at(&law, (const double[2]){radius, INFINITY}, 1).stiffness;
+  return substeps_needed(scene, stiffness, contact_damping(&law, 2 / min_mass), 2 / min_mass);
+}
+
+int substeps_max(const struct scene *scene)
+{
+  return scene->contact.area == AREA_CELLS ? 1 : substeps_by_lens(scene);
+}
