@@ -1,4 +1,5 @@
-# The rows of the benchmark's JSON: objects with n, radius, grid_ms, linked200_ms and linked_tuned_ms, wherever they stand.
+# The rows of the benchmark's JSON: objects with n, radius and the times of one search, grid_build_ms,
+# linked200_build_ms and linked_tuned_build_ms, wherever they stand.
 # "rRADIUS-nN KEY VALUE", of packed discs "packed-rRADIUS-nN", and the ratios of the linked cells to the grid.
 function number(text, key) {
   if (!match(text, "\"" key "\": *[-+.0-9eE]+")) return ""
@@ -10,11 +11,11 @@ BEGIN {
   while ((getline line < JSON) > 0) all = all line
   count = split(all, object, "{")
   for (k = 1; k <= count; k++) {
-    n = number(object[k], "n"); grid = number(object[k], "grid_ms")
+    n = number(object[k], "n"); grid = number(object[k], "grid_build_ms")
     if (n == "" || grid == "") continue
     if (number(object[k], "packed")) label = "packed-r" number(object[k], "radius") "-n" n
     else label = "r" number(object[k], "radius") "-n" n
-    coarse = number(object[k], "linked200_ms"); tuned = number(object[k], "linked_tuned_ms")
+    coarse = number(object[k], "linked200_build_ms"); tuned = number(object[k], "linked_tuned_build_ms")
     print label, "n", n
     print label, "radius", number(object[k], "radius")
     print label, "grid_ms", grid

@@ -9,9 +9,9 @@ set logscale xy
 set yrange [0.001:*]
 set key top left
 set xlabel "discs"
-set ylabel "ms a step"
+set ylabel "ms a search"
 do for [radius in "2 5"] {
-  set title sprintf("Fig. 6: cost of contacts a step, R = %d", radius + 0)
+  set title sprintf("Fig. 6: cost of a search for contacts, R = %d", radius + 0)
   plot of(radius + 0, "grid_ms") with linespoints pointtype 7 title "by the grid", \
        of(radius + 0, "linked200_ms") with linespoints pointtype 6 title "linked cells of 200 x 200 (the paper's)", \
        of(radius + 0, "linked_tuned_ms") with linespoints pointtype 4 title "linked cells of one diameter"
