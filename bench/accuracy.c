@@ -20,8 +20,8 @@ struct series {
   struct accuracy_choice choice;
   char name[64];
   struct accuracy_outcome outcome[RESOLUTIONS];
-  bool cheapest[2][RESOLUTIONS]; /* by seconds, by updates: no other run is better for the same cost or cheaper */
-  double order;                  /* of convergence; NAN where it cannot be fitted */
+  bool cheapest[2][RESOLUTIONS]; /* on the Pareto front, by seconds and by updates */
+  double order;                  /* of convergence; NAN without a fit */
 };
 
 struct study {
@@ -142,7 +142,7 @@ static void list_choices(struct study *study)
       }
 }
 
-/* A run that diverged is a result; whatever else fails ends the benchmark. */
+/* A run that diverged is a result; any other failure ends the benchmark. */
 static bool run_series(const struct study *study, void *context, struct series *series, struct status *status)
 {
   for (int r = 0; r < study->resolutions; r++) {
@@ -217,7 +217,7 @@ static void print_table(const struct study *study)
   }
 }
 
-/* The runs that no other beats, from the cheapest on. */
+/* The Pareto front, from the cheapest run on. */
 static void print_front(const struct study *study, int by)
 {
   double beyond = -1;
@@ -240,7 +240,7 @@ static void print_front(const struct study *study, int by)
   printf("\n");
 }
 
-/* One run a line, which the plot relies on. */
+/* One run a line: bench/accuracy.gp depends on it. */
 static void report_study(const struct study *study, bool first, FILE *json)
 {
   for (int s = 0; s < study->count; s++) {

@@ -1,5 +1,5 @@
-/* Error against cost: cases with a known answer, run at several resolutions for each choice that a user has. A case only
- * says how to run one of these; accuracy.c does the rest. */
+/* Error against cost: cases with a known solution, run at several resolutions for each choice of operator, form,
+ * precision and area. A case defines one run; accuracy.c does the rest. */
 #ifndef DELBM_BENCH_ACCURACY_H
 #define DELBM_BENCH_ACCURACY_H
 
@@ -25,14 +25,14 @@ struct accuracy_choice {
   enum contact_area area;
 };
 
-/* Of one run, or of one each at several places of the disc within a cell. */
+/* Outcome of one run, or of runs over several places of the disc within a cell. */
 struct accuracy_outcome {
   double error;            /* the mean over the places; NAN where a run diverged */
-  double worst;            /* of the places; of one place the error again */
+  double worst;            /* largest over the places */
   double seconds, updates; /* of the steps alone; the mean over the places */
 };
 
-/* `context` is what the case has prepared. */
+/* `context`: the result of `prepare`. */
 typedef bool accuracy_run(void *context, const struct accuracy_choice *choice, int resolution,
                           struct accuracy_outcome *outcome, struct status *status);
 
@@ -40,30 +40,30 @@ enum { RESOLUTIONS = 5 };
 
 struct accuracy_case {
   const char *name;
-  const char *error;           /* what is measured, against what */
-  const char *axis;            /* what the resolution counts */
+  const char *error;           /* definition of the error */
+  const char *axis;            /* meaning of the resolution */
   int resolution[RESOLUTIONS]; /* ends with 0 if there are fewer */
-  int quick;                   /* how many of these a quick run takes */
-  double bound;                /* of the program's defaults at the coarsest resolution: beyond it the benchmark fails */
-  int places;                  /* within a cell over which a run averages; 0: one run has the answer */
-  bool with_forms, with_areas; /* else those of the program's defaults; contacts do not depend on the operator */
+  int quick;                   /* number of resolutions in a quick run */
+  double bound; /* of the error of the program's defaults at the coarsest resolution: beyond it the benchmark fails */
+  int places;   /* number of places within a cell over which a run averages; 0: no average */
+  bool with_forms, with_areas; /* false: only the defaults; contacts are independent of the operator */
   accuracy_run *run;
-  void *(*prepare)(bool quick, struct status *status); /* what all runs share; NULL: nothing */
+  void *(*prepare)(bool quick, struct status *status); /* context of all runs; NULL: none */
   void (*finish)(void *context);
 };
 
 extern const struct accuracy_case accuracy_taylor_green, accuracy_poiseuille, accuracy_couette, accuracy_shear_layer,
     accuracy_spin, accuracy_drag, accuracy_settling, accuracy_crossing, accuracy_impact;
 
-/* A box as scene_box, with what the choice says. */
+/* scene_box with the settings of the choice. */
 struct scene accuracy_scene(const struct accuracy_choice *choice, int nx, int ny, double viscosity, enum sides sides);
 void accuracy_apply(const struct accuracy_choice *choice, struct scene *scene);
 
-/* Runs a case at one place: the deviation from the answer, its cost added to `cost`. */
+/* Runs a case at one place: *deviation is its error with sign; adds its cost to `cost`. */
 typedef bool accuracy_run_at(const struct accuracy_choice *choice, int resolution, const struct offset *offset,
                              double *deviation, struct accuracy_outcome *cost, struct status *status);
 
-/* Runs a case at all places. */
+/* Runs a case at all places (places.h). */
 bool accuracy_over_places(accuracy_run_at *run, const struct accuracy_choice *choice, int resolution,
                           struct accuracy_outcome *outcome, struct status *status);
 

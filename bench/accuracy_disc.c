@@ -1,4 +1,4 @@
-/* Discs in slow flow: spin in shear, settling between walls, and what crossing cells does to the force. */
+/* Discs in slow flow: spin in shear, settling between walls, noise of the force on a disc that crosses cells. */
 #include "accuracy.h"
 
 #include "base/memory.h"
@@ -20,20 +20,19 @@ static struct flow_state sheared(const void *context, int x, int y)
       .density = 1, .velocity = {shear->rate * (y + 0.5 - shear->centre), 0}, .gradient = {{0, shear->rate}, {0, 0}}};
 }
 
-/* A disc held near the middle of a square cell of `width`, periodic along the walls, which move so that the shear is at
- * rest at the disc's centre. Slow: Re = shear R^2/nu 0.01. */
+/* A fixed disc near the middle of a square box of `width`, periodic along the walls, whose velocities put the zero
+ * of the shear at the disc's centre. Re = shear R^2/nu = 0.01. */
 struct sheared_disc {
   int radius, width;
   double x, y, viscosity;
   struct shear shear;
 };
 
-/* The torque on the disc that spins at so many times half the shear rate, over 4 pi mu R^2 and that rate: what it would
- * gain in spin, if it were alone. */
+/* Torque on the disc at a spin of `spin` times half the shear rate, over 4 pi mu R^2 times half the shear rate. */
 static bool shear_torque(const struct sheared_disc *d, const struct accuracy_choice *choice, double spin,
                          double *torque, struct accuracy_outcome *cost, struct status *status)
 {
-  const int64_t look = (int64_t)(d->width * d->width / (100 * d->viscosity));
+  const int64_t interval = (int64_t)(d->width * d->width / (100 * d->viscosity));
   const double half = d->shear.rate / 2, unit = -half * 4 * M_PI * d->viscosity * d->radius * d->radius;
   struct steady steady = {.enough = 1e-5};
   struct scene scene = accuracy_scene(choice, d->width, d->width, d->viscosity, SIDES_PERIODIC);
@@ -46,8 +45,8 @@ static bool shear_torque(const struct sheared_disc *d, const struct accuracy_cho
   bool ok = simulation_create(&simulation, &scene, status), known = false;
   if (ok) simulation_start(simulation, sheared, &d->shear);
   while (ok && !known) {
-    ok = accuracy_advance(simulation, look, cost, status);
-    known = ok && steady_look(&steady, spin + simulation_discs(simulation)->torque[0] / unit);
+    ok = accuracy_advance(simulation, interval, cost, status);
+    known = ok && steady_add(&steady, spin + simulation_discs(simulation)->torque[0] / unit);
   }
   *torque = steady.limit - spin;
   simulation_destroy(simulation);
@@ -55,7 +54,7 @@ static bool shear_torque(const struct sheared_disc *d, const struct accuracy_cho
   return ok;
 }
 
-/* The spin without torque, over half the shear rate: the torque is linear in the spin. */
+/* The spin at zero torque, over half the shear rate, from the linearity of the torque in the spin. */
 static bool shear_spin(const struct accuracy_choice *choice, int radius, int width, const struct offset *offset,
                        double *spin, struct accuracy_outcome *cost, struct status *status)
 {
@@ -69,7 +68,8 @@ static bool shear_spin(const struct accuracy_choice *choice, int radius, int wid
   return true;
 }
 
-/* Two widths, 6 and 12 R: what the walls and the disc's images add goes as 1/width^2; what is left of them is 1e-4. */
+/* Extrapolated from widths of 6 and 12 R: the effect of walls and images is proportional to 1/width^2, with a rest
+ * of 1e-4. */
 static bool spin_at(const struct accuracy_choice *choice, int radius, const struct offset *offset, double *deviation,
                     struct accuracy_outcome *cost, struct status *status)
 {
@@ -106,8 +106,8 @@ static double faxen_drag(double k)
   return 4 * M_PI / (-log(k) - 0.9157 + k2 * (1.7244 + k2 * (-1.7302 + k2 * (2.4056 - 4.5913 * k2))));
 }
 
-/* The disc falls from the middle of a closed box by a few cells, at Re 0.05. Deviations of its velocity at `LEVELS` heights
- * of the last cell, through which the force varies. */
+/* The disc falls from the middle of a closed box by a few cells, at Re 0.05. Deviations of its velocity are taken at
+ * LEVELS heights within the last cell. */
 enum { LEVELS = 16 };
 
 static bool fall(const struct accuracy_choice *choice, int radius, int width, double deviation[LEVELS],
@@ -133,8 +133,8 @@ static bool fall(const struct accuracy_choice *choice, int radius, int width, do
   return ok;
 }
 
-/* The disc stands in the middle between the walls, which is between two columns of cells where the width is even and in the
- * middle of one where it is odd; it falls through all heights within a cell. */
+/* The disc's centre is midway between the walls: on a line of cells for an even width, at the centre of cells for an
+ * odd width. */
 static bool run_settling(void *context, const struct accuracy_choice *choice, int radius,
                          struct accuracy_outcome *outcome, struct status *status)
 {
@@ -160,7 +160,7 @@ const struct accuracy_case accuracy_settling = {
     .with_forms = true,
     .run = run_settling};
 
-/* A disc and a channel full of fluid that pass each other at `speed`. */
+/* A disc and a channel of fluid at relative velocity `speed`. */
 struct passage {
   int radius, size;
   double viscosity, speed;
@@ -174,9 +174,9 @@ static struct flow_state stream(const void *context, int x, int y)
   return (struct flow_state){.density = 1, .velocity = {-p->speed, 0}};
 }
 
-/* The force on the disc in each of `count` steps after `skip`, the disc driven or the fluid moving. */
-static bool follow(const struct passage *p, const struct accuracy_choice *choice, bool driven, int skip, int count,
-                   double *force, struct accuracy_outcome *outcome, struct status *status)
+/* Records the force on the disc in each of `count` steps after `skip`, with the disc driven or the fluid moving. */
+static bool record_force(const struct passage *p, const struct accuracy_choice *choice, bool driven, int skip,
+                         int count, double *force, struct accuracy_outcome *outcome, struct status *status)
 {
   struct scene scene = accuracy_scene(choice, p->size, p->size, p->viscosity, SIDES_PERIODIC);
   const struct side wall = {SIDE_WALL, {driven ? 0 : -p->speed, 0}};
@@ -198,7 +198,7 @@ static bool follow(const struct passage *p, const struct accuracy_choice *choice
   return ok;
 }
 
-/* What a moving disc feels besides: root mean square of the difference over four cells, over the mean force. */
+/* Noise of the force on a moving disc: root mean square of the difference over four cells, over the mean force. */
 static double noise(const double *moving, const double *resting, int count)
 {
   double squares = 0, sum = 0;
@@ -209,15 +209,15 @@ static double noise(const double *moving, const double *resting, int count)
   return sqrt(squares / count) / fabs(sum / count);
 }
 
-/* The disc starts from the place at which the other one is held. */
+/* The driven disc starts at the position of the fixed disc. */
 static bool cross_from(const struct accuracy_choice *choice, int radius, const struct offset *offset, double *deviation,
                        struct accuracy_outcome *cost, struct status *status)
 {
   const struct passage p = {radius, 10 * radius, 0.05, 0.1 / radius, *offset}; /* Re 4 */
   const int skip = (int)(p.size * p.size / (20 * p.viscosity)), steps = (int)(4 / p.speed);
   double *force = memory_allocate(2 * (size_t)steps, sizeof *force, "the forces", status);
-  const bool ok = force && follow(&p, choice, true, skip, steps, force, cost, status) &&
-                  follow(&p, choice, false, skip, steps, force + steps, cost, status);
+  const bool ok = force && record_force(&p, choice, true, skip, steps, force, cost, status) &&
+                  record_force(&p, choice, false, skip, steps, force + steps, cost, status);
   if (ok) *deviation = noise(force, force + steps, steps);
   free(force);
   return ok;

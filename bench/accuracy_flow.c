@@ -1,4 +1,4 @@
-/* Flows without discs whose solution is known in closed form. */
+/* Flows without discs with a solution in closed form. */
 #include "accuracy.h"
 
 #include "base/memory.h"
@@ -27,7 +27,7 @@ static bool compare(const struct scene *scene, flow_initial *initial, const void
   return ok;
 }
 
-/* Vortices of 1 x 2 waves in a periodic square, which viscosity lets decay as they are. */
+/* Vortices of 1 x 2 waves in a periodic square; they decay without a change of form. */
 struct vortices {
   double kx, ky, speed, viscosity, time;
 };
@@ -44,7 +44,7 @@ static struct flow_state vortices_at(const void *context, int x, int y)
                                           {w * v->kx * cos(ax) * cos(ay), -w * v->ky * sin(ax) * sin(ay)}}};
 }
 
-/* With a speed that falls as the cells grow in number, so that compressibility falls with the cells' error. */
+/* The speed is proportional to the cell size, so that the compressibility error falls with the discretisation error. */
 static bool run_taylor_green(void *context, const struct accuracy_choice *choice, int n,
                              struct accuracy_outcome *outcome, struct status *status)
 {
@@ -114,7 +114,7 @@ static bool run_poiseuille(void *context, const struct accuracy_choice *choice, 
   const double viscosity = 0.1, speed = 0.01;
   struct scene scene = channel(choice, height, viscosity);
   scene.fluid.force[0] = 8 * viscosity * speed / (height * height);
-  /* what is not steady yet is of the order exp(-pi^2 3) */
+  /* the transient has decayed to exp(-3 pi^2) */
   return compare_channel(&scene, (int64_t)(3 * height * height / viscosity), parabola, speed, outcome, status);
 }
 

@@ -1,5 +1,5 @@
-/* Two discs that meet head on, so heavy that the fluid does not matter: restitution against that of the contact law, which
- * GSL integrates. */
+/* Head-on impact of two discs so heavy that the fluid is negligible: restitution against the contact law, integrated
+ * by GSL. */
 #include "accuracy.h"
 
 #include "contact/law.h"
@@ -27,7 +27,7 @@ static int spring_rate(double time, const double state[], double rate[], void *c
   return GSL_SUCCESS;
 }
 
-/* Of a contact that lasts about `duration` steps; NAN if GSL fails. */
+/* Restitution of a contact of about `duration` steps; NAN if GSL fails. */
 static double exact_restitution(struct impactor *impactor, double duration)
 {
   gsl_odeiv2_system system = {spring_rate, NULL, 2, impactor};
@@ -41,8 +41,8 @@ static double exact_restitution(struct impactor *impactor, double duration)
   return result == GSL_SUCCESS ? -state[1] / speed : NAN;
 }
 
-/* The stiffness with which an undamped contact lasts `duration`: for small overlap the force goes as its power 3/2, as
- * Hertz's, and the duration is 2.943 times the largest overlap over the speed. */
+/* The stiffness for an undamped contact of `duration`: at small overlap the force is proportional to overlap^(3/2),
+ * as in Hertz's law, and the duration is 2.943 times the largest overlap over the speed. */
 static double stiffness_for(double duration, double mass, double alpha)
 {
   const double overlap = duration * speed / 2.943, work = 8.0 / 15 * sqrt(radius) * pow(overlap, 2.5);
@@ -68,9 +68,9 @@ static bool verify_momentum(struct simulation *simulation, struct status *status
   return drift < 1e-12 || status_fail(status, DELBM_FAILED, "an impact changes momentum by %g of a disc's", drift);
 }
 
-/* Restitution, from before the discs meet until they are apart. */
-static bool meet(const struct scene *scene, double duration, double *restitution, struct accuracy_outcome *outcome,
-                 struct status *status)
+/* Restitution of one impact. */
+static bool collide(const struct scene *scene, double duration, double *restitution, struct accuracy_outcome *outcome,
+                    struct status *status)
 {
   struct simulation *simulation = NULL;
   const int64_t steps = (int64_t)(10 + 2 / speed + 4 * duration);
@@ -81,7 +81,7 @@ static bool meet(const struct scene *scene, double duration, double *restitution
   return ok;
 }
 
-/* The worst of contacts that begin at different parts of a step. */
+/* The worst of contacts that begin at different fractions of a step. */
 static bool run_impact(void *context, const struct accuracy_choice *choice, int duration,
                        struct accuracy_outcome *outcome, struct status *status)
 {
@@ -91,7 +91,7 @@ static bool run_impact(void *context, const struct accuracy_choice *choice, int 
     struct scene scene = impact(choice, duration, 1.3 + k * speed / PHASES);
     struct impactor spring = {contact_law_of(&scene), heavy * M_PI * radius * radius / 2};
     double restitution = NAN;
-    ok = meet(&scene, duration, &restitution, outcome, status);
+    ok = collide(&scene, duration, &restitution, outcome, status);
     outcome->error = fmax(outcome->error, fabs(restitution - exact_restitution(&spring, duration)));
     scene_clear(&scene);
   }

@@ -1,5 +1,5 @@
-/* The double shear layer of Minion & Brown (1997) at Re 10^4, against the pseudo-spectral solver: layers of 1/80 of the
- * box, which roll up, and where a scheme that cannot resolve them makes vortices of its own. */
+/* The double shear layer of Minion & Brown (1997) at Re 10^4, against the pseudo-spectral solver: layers of 1/80 of
+ * the box that roll up. A scheme that does not resolve them produces spurious vortices. */
 #include "accuracy.h"
 
 #include "base/memory.h"
@@ -17,7 +17,7 @@ static double shear_vorticity(double x, double y)
   return 2 * M_PI * sway * cos(2 * M_PI * (x + 0.25)) + (y < 0.5 ? -layer : layer);
 }
 
-/* The reference at both ends of the time. */
+/* The reference at start and end. */
 struct reference {
   struct spectral *start, *end;
 };
@@ -47,10 +47,10 @@ static void *create_reference(bool quick, struct status *status)
   return NULL;
 }
 
-/* The reference's values in the middle of n x n cells. */
+/* The reference at the centres of n x n cells. */
 struct samples {
   int n;
-  double speed; /* cells a step, of the reference's 1 */
+  double speed; /* cells/step for a speed of 1 in the reference */
   double *values[SPECTRAL_PRESSURE + 1];
 };
 
@@ -81,7 +81,7 @@ static struct flow_state sample_at(const void *context, int x, int y)
       .gradient = {{ux_x, slope * s->values[SPECTRAL_UX_Y][at]}, {slope * s->values[SPECTRAL_UY_X][at], -ux_x}}};
 }
 
-/* With a speed that falls as the cells grow in number, as taylor-green. */
+/* The speed is proportional to the cell size, as in taylor-green. */
 static bool run_shear(void *context, const struct accuracy_choice *choice, int n, struct accuracy_outcome *outcome,
                       struct status *status)
 {

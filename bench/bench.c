@@ -15,6 +15,6 @@ const struct bench *bench_at(size_t index)
       {"overlap", "how does the overlap area grow with distance, and how does the one by cells differ?", bench_overlap},
       {"stability", "what stays stable and accurate, and where does it end?", bench_stability},
   };
-  _Static_assert(sizeof all / sizeof all[0] <= BENCHES_MOST, "too many benchmarks");
+  _Static_assert(sizeof all / sizeof all[0] <= BENCHES_MAX, "too many benchmarks");
   return index < sizeof all / sizeof all[0] ? &all[index] : NULL;
 }

@@ -7,8 +7,8 @@
 
 #include <stdio.h>
 
-/* Where a benchmark leaves its figures. `json` is NULL unless --json was given; what is written there are the members
- * of an object of the benchmark's name. */
+/* Destination of a benchmark's figures. `json` is NULL without --json; a benchmark writes the members of an object
+ * of its name. */
 struct bench_report {
   FILE *json;
   bool quick; /* the same work and verification, with smaller sizes, fewer cases or fewer repetitions */
@@ -25,12 +25,12 @@ struct bench {
 bench_run bench_accuracy, bench_contact, bench_drag, bench_occupation, bench_overlap, bench_run_alone, bench_stability,
     bench_step, bench_sweep;
 
-/* Prints what is measured on, and puts it into the report as its first member. */
+/* Prints the machine, and writes it as the first member of the report. */
 void bench_describe_machine(const struct bench_report *report);
 
-enum { BENCHES_MOST = 16 };
+enum { BENCHES_MAX = 16 };
 
-/* All benchmarks, BENCHES_MOST at most; NULL past the last. */
+/* All benchmarks, BENCHES_MAX at most; NULL past the last. */
 const struct bench *bench_at(size_t index);
 
 #endif

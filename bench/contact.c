@@ -55,7 +55,7 @@ static bool allocate(struct crowd *c, struct status *status)
   return (c->vx && c->vy && c->scratch) || status_fail(status, DELBM_FAILED, "bench contact: no memory");
 }
 
-/* n x n discs, each on its own square of the box. */
+/* n x n discs, one in each square of the box. */
 static bool crowd_create(struct crowd *c, int n, double radius, int size, struct status *status)
 {
   const double spacing = (double)size / n;

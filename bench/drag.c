@@ -35,16 +35,16 @@ bool square_array_drag(const struct scene *scene, double *drag, struct accuracy_
 {
   const size_t cells = (size_t)scene_cells(scene);
   const double viscosity = scene->fluid.viscosity;
-  const int64_t look = (int64_t)fmax(250, (double)cells / (100 * viscosity));
+  const int64_t interval = (int64_t)fmax(250, (double)cells / (100 * viscosity));
   struct steady steady = {.enough = scene->fluid.precision == PRECISION_DOUBLE ? 1e-6 : 1e-5};
   struct simulation *simulation = NULL;
   double *ux = memory_allocate(cells, sizeof *ux, "the velocity", status);
   bool ok = ux && simulation_create(&simulation, scene, status), known = false;
   while (ok && !known) {
-    ok = accuracy_advance(simulation, look, cost, status);
+    ok = accuracy_advance(simulation, interval, cost, status);
     if (!ok) break;
     simulation_fields(simulation, NULL, ux, NULL);
-    known = steady_look(&steady, mean(ux, cells));
+    known = steady_add(&steady, mean(ux, cells));
   }
   if (ok) *drag = scene->fluid.force[0] * (double)cells / (viscosity * steady.limit);
   simulation_destroy(simulation);
@@ -69,7 +69,7 @@ bool square_array_error(const struct square_array *array, const struct accuracy_
   return ok;
 }
 
-/* Over all places, in per cent; NAN where a run diverged. */
+/* Errors over all places, in per cent; NAN if a run diverged. */
 static bool drag_errors(const struct choice *choice, const struct square_array *array, double viscosity,
                         struct deviations *all, struct status *status)
 {
@@ -86,7 +86,7 @@ static bool drag_errors(const struct choice *choice, const struct square_array *
   return true;
 }
 
-/* A list of numbers, null for what is none. */
+/* A list of numbers, null for NAN. */
 static void write_list(FILE *json, const char *name, const double *values, int count)
 {
   fprintf(json, ", \"%s\": [", name);
@@ -95,8 +95,8 @@ static void write_list(FILE *json, const char *name, const double *values, int c
   fprintf(json, "]");
 }
 
-/* Slow flow has one drag at every viscosity in the midpoint form with two rates; the program's defaults stay near the exact
- * one where discs are not close to each other. */
+/* midpoint with two rates: the drag is independent of viscosity. The program's defaults: near the exact drag unless
+ * discs are close to each other. */
 static bool verify(const struct choice *choice, const struct square_array *array, const double *percent_off,
                    struct status *status)
 {
@@ -154,7 +154,7 @@ bool bench_drag(const struct bench_report *report, struct status *status)
   return true;
 }
 
-/* The worst of three viscosities. */
+/* The largest error of three viscosities. */
 static bool drag_at(const struct accuracy_choice *choice, int radius, const struct offset *offset, double *deviation,
                     struct accuracy_outcome *cost, struct status *status)
 {

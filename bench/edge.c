@@ -48,8 +48,8 @@ static bool is_number(const char *word)
   return !strcasestr(word, "nan") && !strcasestr(word, "inf");
 }
 
-/* The table and the summary; a message may hold such words, a number may not. */
-static bool look_through(const struct edge *edge, struct status *status)
+/* Fails if a table or the summary contains "nan" or "inf" outside of messages. */
+static bool check_files(const struct edge *edge, struct status *status)
 {
   for (int k = 1; k < FILES; k++) {
     char path[128], line[1024];
@@ -103,7 +103,7 @@ static bool run_recorded(struct edge *edge, const struct scene *scene, struct si
   if (!ok) *status = failure;
   ok = ok && conclude(recorder, simulation, run, scene, &failure, status);
   recorder_destroy(recorder);
-  return ok && look_through(edge, status);
+  return ok && check_files(edge, status);
 }
 
 bool edge_run(struct edge *edge, struct scene *scene, struct edge_run *run, struct status *status)

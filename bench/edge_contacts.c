@@ -1,4 +1,4 @@
-/* Contacts at the edge: soft and stiff ones with any number of sub-steps, fast ones, and a disc wedged between walls. */
+/* Limits of contacts: stiffness and sub-steps, speed of impact, a disc wedged between walls. */
 #include "edge.h"
 #include "scenes.h"
 
@@ -6,14 +6,14 @@
 
 enum { ROWS = 16 };
 
-/* Two discs that meet head on; what is seen of it. */
+/* Results of a head-on impact of two discs. */
 struct impact {
   double density, speed, viscosity, stiffness, damping;
   int substeps;
   enum contact_area area;
   double approach, separation; /* speeds, before the first step with a contact force and after the last */
-  double overlap;              /* deepest */
-  double momentum;             /* drift of what is conserved */
+  double overlap;              /* largest */
+  double momentum;             /* drift of the conserved momentum */
   bool met, diverged;
   int64_t end;
 };
@@ -25,11 +25,11 @@ static bool watch_impact(struct simulation *simulation, void *context)
   struct impact *impact = context;
   const struct discs *d = simulation_discs(simulation);
   const double overlap = 2 * impact_radius - hypot(d->x[1] - d->x[0], d->y[1] - d->y[0]);
-  const double closing = d->vx[0] - d->vx[1];
-  const bool touching = d->contact_fx[0] != 0; /* in this step, if only for a part of it */
+  const double approach_speed = d->vx[0] - d->vx[1];
+  const bool touching = d->contact_fx[0] != 0; /* during a part of this step at least */
   impact->met |= touching;
-  if (!impact->met) impact->approach = closing;
-  if (touching) impact->separation = -closing;
+  if (!impact->met) impact->approach = approach_speed;
+  if (touching) impact->separation = -approach_speed;
   impact->overlap = fmax(impact->overlap, overlap);
   return !impact->met || touching || overlap > 0;
 }
@@ -54,13 +54,14 @@ static bool run_impact(struct edge *edge, struct impact *impact, struct status *
   return ok;
 }
 
-/* What the maps of one set of impacts show. */
+/* Maps of one set of impacts. */
 enum { RESTITUTION, OVERLAP, MOMENTUM, FIGURES };
 static const struct map impact_maps[FIGURES] = {
     {.value = "speed after over speed before the contact: above 1, energy gained", .threshold = 1},
     {.value = "deepest overlap over radius", .threshold = 0.1},
     {.value = "drift of momentum a cell", .threshold = 1e-13}};
-static const double fluid_gives = 0.02; /* to undamped discs, in the step in which they meet, of the speed before */
+static const double fluid_gain =
+    0.02; /* gain of undamped discs in the first step of the contact, over the speed before */
 static const char *const impact_names[FIGURES] = {"restitution", "overlap", "momentum"};
 
 static double figure(const struct impact *impact, int which)
@@ -69,7 +70,7 @@ static double figure(const struct impact *impact, int which)
   return which == OVERLAP ? impact->overlap / impact_radius : impact->momentum;
 }
 
-/* Prints the maps of figures of impacts[row][column], from `first` on. */
+/* Prints the maps of figures `first` and on of impacts[row][column]. */
 static void put_impacts(const struct edge *edge, const char *what, struct map *map, const struct impact *impacts,
                         int rows, char labels[][MAP_LABEL], int first)
 {
@@ -78,7 +79,7 @@ static void put_impacts(const struct edge *edge, const char *what, struct map *m
     snprintf(name, sizeof name, "%s, %s", what, impact_names[f]);
     map->name = name;
     map->value = impact_maps[f].value;
-    map->threshold = impact_maps[f].threshold + (f == RESTITUTION && impacts->damping == 0 ? fluid_gives : 0);
+    map->threshold = impact_maps[f].threshold + (f == RESTITUTION && impacts->damping == 0 ? fluid_gain : 0);
     map_begin(map, edge->report);
     for (int r = 0; r < rows; r++) {
       struct place row[MAP_COLUMNS];
@@ -122,8 +123,8 @@ static bool map_stiffness(struct edge *edge, enum contact_area area, double damp
   return true;
 }
 
-/* Each disc's Mach number against density. No restitution: at such speeds the fluid between them takes and gives more
- * than the contact does. */
+/* Each disc's Mach number against density. Restitution is omitted: at such speeds the impulse of the fluid between
+ * the discs exceeds the contact's. */
 static bool map_speed(struct edge *edge, struct status *status)
 {
   static const double machs[] = {0.05, 0.1, 0.2, 0.3, 0.4, 0.5}, densities[] = {0.3, 1.01, 2, 10};
@@ -144,7 +145,7 @@ static bool map_speed(struct edge *edge, struct status *status)
   return true;
 }
 
-/* Farthest from the middle between two walls 10 cells apart. */
+/* Largest distance from the middle between two walls 10 cells apart. */
 static bool watch_middle(struct simulation *simulation, void *context)
 {
   double *farthest = context;

@@ -1,11 +1,11 @@
-/* Many discs at the edge: pressed together by their weight, of very different radii, and several within one cell. */
+/* Limits of many discs: overlap under their weight, large ratios of radii, several centres within one cell. */
 #include "edge.h"
 #include "scenes.h"
 
 #include <math.h>
 
-/* Deepest overlap of any two discs or of a disc and a side, over the smaller radius, at the last look; boxes are
- * closed or, for clusters, far larger than what is in them. */
+/* Largest overlap of two discs or of a disc and a side, over the smaller radius, in the last call. Without periodic
+ * images: boxes are closed or far larger than the cluster in them. */
 static bool watch_overlap(struct simulation *simulation, void *context)
 {
   const struct scene *scene = simulation_scene(simulation);
@@ -24,7 +24,7 @@ static bool watch_overlap(struct simulation *simulation, void *context)
   return true;
 }
 
-/* A map of rows of stiffness against what `scene_of` makes of the column's value. */
+/* A map of stiffness (rows) and the argument of `scene_of` (columns). */
 struct crowd_map {
   struct map map;
   const double *columns;
@@ -62,7 +62,7 @@ static bool put_crowds(struct edge *edge, struct crowd_map *crowds, struct statu
   return true;
 }
 
-/* The paper's crowd, with so many times its weight less buoyancy. */
+/* The paper's crowd, with `weight` times its weight less buoyancy. */
 static struct scene pressed(double weight)
 {
   struct scene scene = scene_crowd(80, 80, 5, 11, 0.2);
@@ -95,7 +95,7 @@ static struct scene cluster(int discs, double radius)
   return scene;
 }
 
-/* Discs whose centres lie within one cell, let go. */
+/* Free discs with centres within one cell. */
 static bool map_cluster(struct edge *edge, struct status *status)
 {
   static const double counts[] = {2, 3, 4, 5, 6}, radii[] = {0.5, 1, 2, 5};

@@ -1,4 +1,4 @@
-/* Single discs at the edge: light and heavy ones, ones smaller than a cell, and ones that are held and spin. */
+/* Limits of single discs: density, radii below a cell, fixed spinning discs. */
 #include "edge.h"
 #include "scenes.h"
 #include "square_array.h"
@@ -9,8 +9,7 @@
 static const char *const forms[] = {[FORM_UNIFIED] = "unified", [FORM_OWEN] = "owen", [FORM_MIDPOINT] = "midpoint"};
 static const char *const solves[] = {[SOLVE_IMPLICIT] = "implicit", [SOLVE_EXPLICIT_AVERAGED] = "averaged"};
 
-/* A disc of R = 5 in a channel, moved by a weight less buoyancy that is the same whatever its density, in one direction
- * or the other: so is its terminal speed. */
+/* A disc of R = 5 in a channel. |weight less buoyancy| is the same for every density, and so is the terminal speed. */
 static struct scene falling(double density, enum coupling_form form, enum coupling_solve solve, double speed)
 {
   const double net = 2e-4;
@@ -23,7 +22,7 @@ static struct scene falling(double density, enum coupling_form form, enum coupli
   return scene;
 }
 
-/* Enough for the disc to regain what it loses at first to fluid at rest. */
+/* Steps to the terminal speed. */
 static int64_t steps_to_fall(const struct edge *edge, double density)
 {
   return (int64_t)((edge->report->quick ? 500 : 20000) * fmin(10, fmax(1, density / 20)));
@@ -36,7 +35,7 @@ static bool go_on(struct simulation *simulation, void *context)
   return true;
 }
 
-/* Mean speed over the last fifth of a run, in which the disc goes through many cells. */
+/* Mean speed over the last fifth of a run, many cells of way. */
 struct travel {
   double from, sum;
   int count;
@@ -64,7 +63,7 @@ static bool terminal_speed(struct edge *edge, struct scene *scene, struct edge_r
   return ok;
 }
 
-/* What the reference run of each form reaches, at density 2. */
+/* Terminal speed of the reference run of a form, at density 2. */
 static bool reference_speed(struct edge *edge, enum coupling_form form, double *speed, struct status *status)
 {
   struct scene scene = falling(2, form, SOLVE_IMPLICIT, 0);
@@ -101,7 +100,7 @@ static bool map_density(struct edge *edge, struct status *status)
   return true;
 }
 
-/* A fixed disc in a periodic square of 16 cells; K = F/(mu U) of a dilute square array (Hasimoto 1959), off by less than
+/* A fixed disc in a periodic square of 16 cells; K = F/(mu U) of a dilute square array (Hasimoto 1959), exact within
  * 0.1 % up to a solid fraction of 0.11. */
 enum { SMALL_BOX = 16, SMALL_MIDDLE = SMALL_BOX / 2, RADII = 9 };
 static const double small_radii[RADII] = {0.5, 0.6, 0.7, 0.8, 0.9, 1, 1.5, 2, 3};
@@ -133,7 +132,7 @@ static bool small_disc_errors(double radius, double viscosity, enum coupling_for
   return true;
 }
 
-/* Two maps of the same runs: the largest error and the mean. A quick run leaves out the smaller viscosity. */
+/* Two maps of the same runs: the largest error and the mean. A quick run omits the smaller viscosity. */
 static bool map_radius(struct edge *edge, struct status *status)
 {
   static const double viscosities[] = {0.1, 0.01};
@@ -164,8 +163,8 @@ static bool map_radius(struct edge *edge, struct status *status)
   return true;
 }
 
-/* A disc of R = 8 that is driven through a periodic box, once along it. Past a cylinder fluid moves at twice its speed
- * at most, in the frame of either, but for what its wake adds. */
+/* A disc of R = 8 driven through a periodic box, once along it. Potential flow around a cylinder reaches twice its
+ * speed at most; the wake may exceed that. */
 static bool drive_disc(struct edge *edge, const struct edge_operator *choice, double viscosity, double mach,
                        struct edge_run *run, struct status *status)
 {
@@ -206,7 +205,7 @@ static bool map_driven(struct edge *edge, const struct edge_operator *choice, st
   return true;
 }
 
-/* What drives fluid: nothing may move much faster than that. `mach`: of it, for a value of 1. */
+/* A driver of the fluid, and a bound of all speeds. `mach`: Mach number of the driver for a value of 1. */
 struct driver {
   struct map map;
   double mach;
@@ -214,7 +213,7 @@ struct driver {
   void (*scene)(struct scene *scene, double value);
 };
 
-/* Of each form and value. */
+/* Map over forms and values. */
 static bool map_driver(struct edge *edge, struct driver *driver, const double *values, struct status *status)
 {
   struct map *map = &driver->map;
@@ -260,7 +259,7 @@ static bool map_spin(struct edge *edge, struct status *status)
   return map_driver(edge, &driver, spins, status);
 }
 
-/* A disc that a lid slides over, half a cell deep. */
+/* A disc overlapped by a sliding lid by half a cell. */
 static void disc_under_a_lid(struct scene *scene, double mach)
 {
   *scene = scene_box(90, 60, 0.01, SIDES_CLOSED);

@@ -1,6 +1,6 @@
 /* Fluid alone at small viscosity and large Mach number: the doubly periodic shear layer of Minion & Brown 1997, two
- * layers tanh(30 y) that roll up, followed until fluid has crossed the box once. Nothing is added, so energy can only go
- * where viscosity takes it, and enstrophy cannot grow: what is not so is the error. Derivatives are spectral. */
+ * layers tanh(30 y) that roll up, until fluid has crossed the box once. Without a force, dE/dt = -2 nu Z and
+ * enstrophy Z cannot grow: deviations are the error. Derivatives are spectral. */
 #include "base/memory.h"
 #include "edge.h"
 #include "lattice/moments.h"
@@ -12,7 +12,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* A shear layer on its way. */
+/* A shear layer in progress. */
 struct layer {
   int size;
   double speed;
@@ -96,8 +96,8 @@ static bool has_diverged(struct layer *l)
   return !(sqrt(worst.speed2) <= diagnostics_fastest);
 }
 
-/* Until fluid has crossed the box. */
-static struct place follow_layer(struct layer *l, const struct map *map)
+/* Runs until fluid has crossed the box once. */
+static struct place advance_layer(struct layer *l, const struct map *map)
 {
   const int64_t steps = (int64_t)ceil(l->size / l->speed), every = steps / 64 + 1;
   const struct energies start = measure(l);
@@ -124,7 +124,7 @@ static bool run_layer(const struct edge_operator *o, const struct map *map, int 
   scene.fluid.rates = edge_rates(o, viscosity);
   struct layer layer;
   const bool ok = layer_create(&layer, &scene, mach / sqrt(3), status);
-  if (ok) *place = follow_layer(&layer, map);
+  if (ok) *place = advance_layer(&layer, map);
   layer_destroy(&layer);
   scene_clear(&scene);
   return ok;

@@ -1,8 +1,7 @@
-/* What it costs to know which cells a disc covers, and how much of them: cell by cell, each area by itself; by line
- * tables (PHYSICS: one arcsine per grid line, each corner used by four cells) over every cell that the disc touches; and
- * as the program does it, where cells within a wide disc are covered without being evaluated: what the paper's modified
- * Verlet list is for. Then the whole stage, in which runs and shares follow from the areas: with all discs
- * moving, and with none, when bands are left as they are. */
+/* Cost of the occupation fractions of a disc: per cell, each area by itself; by line tables (one arcsine per grid
+ * line, a corner for four cells) over every touched cell; and as in the program, where the inner cells of wide discs
+ * are set to 1 without evaluation (the purpose of the paper's modified Verlet list). Then the whole stage, with
+ * runs, owners' weights: with all discs moving, and with none, in which case bands are unchanged. */
 #include "solid/occupation.h"
 #include "base/clock.h"
 #include "bench.h"
@@ -66,7 +65,7 @@ static void paint_disc(struct painting *p, const struct shape *disc, enum way wa
   }
 }
 
-/* Nanoseconds a disc. */
+/* Nanoseconds per disc. */
 static double time_disc(struct painting *p, const struct shape *disc, enum way way, double seconds)
 {
   size_t painted = 0;
@@ -78,7 +77,7 @@ static double time_disc(struct painting *p, const struct shape *disc, enum way w
   return 1e9 * (clock_now() - start) / (double)painted;
 }
 
-/* All ways paint the same, and the areas add up to the disc's. */
+/* All ways have the same fractions, and their sum is the disc's area. */
 static bool verify(struct painting *p, const struct shape *disc, struct status *status)
 {
   for (int place = 0; place < DISC_PLACES; place++)
@@ -130,7 +129,7 @@ static bool same_row(const struct occupation *a, const struct occupation *b, int
   return true;
 }
 
-/* What steps of the stage have left is, bit for bit, what one stage lays out anew. */
+/* After many steps the stage has the same bits as a new stage at the same positions. */
 static bool verify_stage(const struct occupation *o, const struct scene *scene, const struct discs *d,
                          struct status *status)
 {

@@ -1,5 +1,5 @@
-/* The overlap area of two discs against the distance by which they overlap: in closed form for several ratios of radii,
- * with the factor f of A* = f delta*^(3/2) fitted (the paper's Fig. 2 and (11)); and by the cells that both cover, mean
+/* The overlap area of two discs against the distance by which they overlap: in closed form for several ratios of
+ * radii, with the factor f of A* = f delta*^(3/2) fitted (the paper's Fig. 2 and (11)); and by occupied cells, mean
  * and spread over places on the grid, beside the closed form (its Fig. 5). */
 #include "bench.h"
 #include "contact/cells_area.h"
@@ -15,12 +15,12 @@
 enum { POINTS = 50 };
 static const double radius = 10; /* of the areas by cells */
 
-/* What a fit over 0 < delta* <= largest says: A* = factor delta*^(3/2); A* ~ delta*^exponent. */
+/* Fits over 0 < delta* <= largest: A* = factor delta*^(3/2); A* ~ delta*^exponent. */
 struct fit {
   double factor, exponent;
 };
 
-/* A* for the ratio of radii `beta`: the area over the mean area of the discs' harmonic kind, as (11) needs it. */
+/* A* for the ratio of radii `beta`: area over pi/(1/R_i^2 + 1/R_j^2), as in (11). */
 static double dimensionless_area(double beta, double delta)
 {
   const double area = lens_of_discs(1, beta, 1 + beta - delta * beta / (1 + beta)).area;
@@ -41,7 +41,8 @@ static struct fit fit_power(double beta, double largest)
   return fit;
 }
 
-/* The area is the integral of the chord over the distance; a fitted factor is that of the limit of small overlap. */
+/* Checks that the area is the integral of the chord over the distance, and the fitted factor against the limit of
+ * small overlap. */
 static bool verify_ratio(double beta, const struct fit *fit, double limit, struct status *status)
 {
   enum { PARTS = 2000 };

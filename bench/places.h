@@ -1,10 +1,11 @@
-/* Places of a disc's centre within a cell. What a disc feels depends on where it stands on the grid, most of all on whether
- * its centre lies on a corner of cells, which a scene laid out in whole cells does: an error at one place says little.
+/* Places of a disc's centre within a cell. The force on a disc depends on its place on the grid, most on whether its
+ * centre is on a corner of cells, as in scenes designed in whole cells. An error at one place is therefore not
+ * representative.
  *
- * The places are the 3 x 3 lattice of offsets 0, 1/4 and 1/2 of a cell from a corner of cells. Where mirror images of a place
- * in x and in y have the same error, these are the sixteen places of a 4 x 4 lattice over the cell, of which each place
- * stands for one, two or four: its weight. The lattice has the places of highest symmetry (corner, middle of an edge, middle
- * of the cell), where errors are largest or least. */
+ * The places are the 3 x 3 lattice of offsets 0, 1/4 and 1/2 of a cell from a corner of cells. If mirror images of a
+ * place in x and in y have the same error, they represent the 4 x 4 lattice over the cell; the weight of a place is
+ * the number of its images (1, 2 or 4) over 16. The lattice has the places of highest symmetry (corner, middle of an
+ * edge, middle of the cell), where errors are extreme. */
 #ifndef DELBM_BENCH_PLACES_H
 #define DELBM_BENCH_PLACES_H
 
@@ -15,17 +16,17 @@ struct offset {
   double weight; /* all weights add up to 1 */
 };
 
-/* 0 <= k < PLACES; the first is the corner itself. */
+/* 0 <= k < PLACES; place 0 is the corner. */
 struct offset place_offset(int k);
 
-/* Deviations from a known answer over places. */
+/* Statistics of deviations from a known solution over places. */
 struct deviations {
-  double mean;  /* of the deviations, with their sign: what a disc that crosses cells has on average */
-  double error; /* mean of their absolute values */
-  double worst; /* the largest absolute value */
+  double mean;  /* of deviations with sign: the mean error of a disc that crosses cells */
+  double error; /* mean absolute deviation */
+  double worst; /* largest absolute deviation */
 };
 
-/* Adds a deviation; NAN makes all of them NAN. */
+/* Adds a deviation; after a NAN all statistics are NAN. */
 void deviations_add(struct deviations *all, double deviation, double weight);
 
 #endif

@@ -1,6 +1,5 @@
-/* What a run of fluid alone costs beyond the bare sweep: the same box, closed and with a moving lid, stepped by the
- * stage itself and by a simulation, which checks for divergence, keeps the clock and would have room for discs. Both end with
- * the same bits. */
+/* Overhead of a run of fluid alone over the bare sweep: the same box, closed and with a moving lid, stepped by the
+ * stage and by a simulation, which adds checks for divergence and the clock. Both must end with the same bits. */
 #include "base/clock.h"
 #include "base/memory.h"
 #include "bench.h"
@@ -39,7 +38,7 @@ static bool time_run(struct simulation *simulation, int steps, double *ms, struc
   return ok;
 }
 
-/* A box with a lid that has been stepped by the bare stage and by a simulation as often has the same bits. */
+/* Compares the bits after an equal number of steps by the stage and by the simulation. */
 static bool verify(struct flow *flow, struct simulation *simulation, struct status *status)
 {
   const size_t cells = (size_t)scene_cells(flow->scene);

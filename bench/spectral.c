@@ -14,7 +14,7 @@ struct spectral {
   size_t half; /* coefficients: n rows of n/2 + 1 */
   double viscosity;
   double complex *w;  /* vorticity */
-  double complex *at; /* vorticity at which a stage takes its rate */
+  double complex *at; /* vorticity at a Runge-Kutta stage */
   double complex *rate[STAGES];
   double complex *work;
   double *real[REALS];
@@ -85,7 +85,7 @@ bool spectral_create(struct spectral **spectral, int n, double viscosity, struct
   return false;
 }
 
-/* Coefficients, without those that products would alias, of what stands in real[k]. */
+/* Coefficients of real[k], without the wave numbers that alias in products. */
 static void transform(struct spectral *s, int k)
 {
   fftw_execute(s->from_real[k]);
@@ -148,7 +148,7 @@ static void take_rate(struct spectral *s, double complex *rate)
   for (size_t i = 0; i < s->half; i++) rate[i] -= I * wave_y(s, i) * s->work[i];
 }
 
-/* What viscosity leaves of coefficient `at` after `time`. */
+/* Factor of viscous decay of coefficient `at` over `time`. */
 static double decay(const struct spectral *s, size_t at, double time)
 {
   const double kx = wave_x(s, at), ky = wave_y(s, at);
@@ -196,7 +196,7 @@ static void take_pressure(struct spectral *s)
   }
 }
 
-/* Adds a coefficient of waves (mx, my) to that which it looks like on count^2 points in the middle of cells. */
+/* Adds a coefficient of waves (mx, my) to its alias on count^2 points at the centres of cells. */
 static void add_wave(fftw_complex *to, int count, int mx, int my, double complex value)
 {
   const int x = (mx % count + count) % count, y = (my % count + count) % count;
@@ -216,7 +216,8 @@ bool spectral_sample(struct spectral *s, enum spectral_quantity quantity, int co
     const int mx = (int)lround(wave_x(s, i) / (2 * M_PI)), my = (int)lround(wave_y(s, i) / (2 * M_PI));
     const double complex value = quantity == SPECTRAL_PRESSURE ? s->at[i] : coefficient(s, quantity, s->w[i], i);
     add_wave(series, count, mx, my, value);
-    if (mx > 0) add_wave(series, count, -mx, -my, conj(value)); /* only half of a real series is kept */
+    if (mx > 0)
+      add_wave(series, count, -mx, -my, conj(value)); /* only half of the coefficients of a real series are stored */
   }
   if (plan) fftw_execute(plan);
   for (size_t i = 0; plan && i < points; i++) values[i] = creal(series[i]);

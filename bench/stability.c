@@ -1,5 +1,4 @@
-/* What stays stable: maps of completed, inaccurate and diverged over what makes a case hard. Every run with discs
- * writes its files, which are looked through. */
+/* Stability: maps of completed, inaccurate and diverged runs. Files of runs with discs are checked (edge.h). */
 #include "edge.h"
 
 bool bench_stability(const struct bench_report *report, struct status *status)

@@ -1,19 +1,20 @@
-/* When a flow has become steady, and what it would become: a quantity looked at in equal intervals, whose last transient
- * decays as exp(-t/T), has the limit u - d^2/(d - d'), d and d' its last two changes (Aitken 1926). Three limits in a row that
- * agree end the run, once u is within 1 % of them: farther away a second transient may hold them still for a while. */
+/* The limit of a quantity that approaches a steady state. Samples u at equal intervals with a transient exp(-t/T)
+ * have the limit u - d^2/(d - d'), d and d' the last two changes (Aitken 1926). The limit is accepted after three
+ * consecutive estimates that agree, with u within 1 % of them: at larger distance a second transient can make
+ * estimates agree by chance. */
 #ifndef DELBM_BENCH_STEADY_H
 #define DELBM_BENCH_STEADY_H
 
 #include <stdbool.h>
 
 struct steady {
-  double enough; /* relative difference of limits that agree */
-  double limit;  /* from the third look on */
+  double enough; /* largest relative difference of limits that agree */
+  double limit;  /* estimate, from the third sample on */
   double value, change;
-  int looks, agreeing;
+  int samples, agreeing;
 };
 
-/* The next look; true once the limit is known. */
-bool steady_look(struct steady *steady, double value);
+/* Adds the next sample; true once the limit is accepted. */
+bool steady_add(struct steady *steady, double value);
 
 #endif

@@ -1,6 +1,6 @@
-/* A step with discs, stage by stage, against a step of the same box without: 2500 discs of R = 5 in 1000 x 1000 (the
- * paper's Fig. 12), settling, double precision, and the same at 100,000 discs in 6400 x 6400. What was timed is then
- * repeated by the plain kernel, up to 1000 x 1000. */
+/* Times of a step with discs, stage by stage, and of the same box without discs: 2500 settling discs of R = 5 in
+ * 1000 x 1000 (the paper's Fig. 12) and 100,000 discs in 6400 x 6400, double precision. Up to 1000 x 1000 the result
+ * is verified with the baseline kernel. */
 #include "base/clock.h"
 #include "bench.h"
 #include "scenes.h"
@@ -12,7 +12,7 @@
 
 enum { REPEATS = 5 };
 
-/* Times of one stretch of steps. */
+/* Times of one series of steps. */
 struct stretch {
   double step; /* ms */
   struct stage_times stages;
@@ -37,7 +37,7 @@ static int compare_stretches(const void *a, const void *b)
   return (l->step > r->step) - (l->step < r->step);
 }
 
-/* Both scenes in turn; the stretch of median length of each. */
+/* Runs both scenes in turn; returns the series of median time of each. */
 static bool measure(struct simulation *simulations[2], int steps, struct stretch medians[2], struct status *status)
 {
   struct stretch samples[2][REPEATS];
@@ -51,7 +51,7 @@ static bool measure(struct simulation *simulations[2], int steps, struct stretch
   return true;
 }
 
-/* Of a timed run: mass is kept, no disc has left the box, and on the whole they settle. */
+/* After a timed run: mass is conserved, all discs are in the box, and their mean height has fallen. */
 static bool verify_state(struct simulation *simulation, struct status *status)
 {
   const struct discs *d = simulation_discs(simulation);
@@ -70,7 +70,7 @@ static bool verify_state(struct simulation *simulation, struct status *status)
   return d->count == 0 || fall > 0 || status_fail(status, DELBM_FAILED, "bench step: discs do not settle");
 }
 
-/* The same steps by the plain kernel on one thread end with the discs at the same places, within round-off. */
+/* The same steps with the baseline kernel on one thread lead to the same positions within round-off. */
 static bool verify_places(const struct simulation *timed, struct status *status)
 {
   struct scene scene = *simulation_scene(timed);

@@ -1,9 +1,9 @@
-/* The fluid sweep alone: million cell updates a second of each kernel, in place, from one array to another (the classic
- * scheme), and blocked in time, beside a plain in-place read-modify-write of the same nine planes: the least that
- * memory allows for 18 values an update. Rates are medians of alternating repeats, in a box that is periodic both ways.
+/* The fluid sweep alone: million cell updates a second of each kernel, in place, from one array to another (the
+ * classic scheme), and blocked in time, beside an in-place read-modify-write of the same nine planes: the memory
+ * bound of 18 values an update. Rates are medians of alternating repeats, in a box that is periodic both ways.
  *
- * The reference checks every kernel with the rates of every collision in a small box, and then each subject that was
- * timed: waves are set in its box, it takes a few steps more, and two windows of cells are compared. */
+ * Every kernel is compared with reference.h at the rates of every collision in a small box. So is each timed
+ * subject: from an initial state of waves it takes a few steps, and two windows of cells are compared. */
 #include "accuracy.h"
 #include "base/clock.h"
 #include "bench.h"
@@ -29,7 +29,7 @@ struct subject {
   struct populations other; /* the second array */
 };
 
-/* Nine planes read, changed and written back: what an in-place update must move, and hardly more arithmetic. */
+/* Nine planes read, changed and written: the memory traffic of an in-place update with little arithmetic. */
 #define READ_MODIFY_WRITE(name, real)                                                                                  \
   static void name(void *const a[Q], int n)                                                                            \
   {                                                                                                                    \
@@ -57,7 +57,8 @@ static void plain_pass(const struct populations *p)
   }
 }
 
-/* Row y pulls from `from` what streams into it, and leaves it collided in `to`; the columns beside the box are images. */
+/* Row y pulls its populations from `from` and writes them collided to `to`; columns beside the box are periodic
+ * images. */
 static void two_arrays_step(struct subject *subject)
 {
   struct populations *from = &subject->flow.populations, *to = &subject->other;
@@ -100,7 +101,7 @@ static void take_steps(struct subject *subject, int steps)
   }
 }
 
-/* Waves so fast that adaptive rates differ from constant ones by far more than single precision rounds. */
+/* Waves so fast that adaptive and constant rates differ by far more than the round-off of single precision. */
 static void set_waves(struct populations *p)
 {
 #pragma omp parallel for schedule(static)
@@ -130,7 +131,7 @@ static void subject_destroy(struct subject *subject)
   populations_destroy(&subject->other);
 }
 
-/* The box of a kernel with the rates of a collision. */
+/* A periodic box with a kernel and the rates of a collision. */
 static struct scene periodic_box(int nx, int ny, const struct sweep_kernel *kernel, enum accuracy_operator operator)
 {
   const struct accuracy_choice choice = {.operator= operator, .precision = kernel->precision };
@@ -139,12 +140,12 @@ static struct scene periodic_box(int nx, int ny, const struct sweep_kernel *kern
   return scene;
 }
 
-/* Cells x .. x + nx - 1, y .. y + ny - 1 of the periodic box, counted on beyond its sides. */
+/* Cells x .. x + nx - 1, y .. y + ny - 1 of the periodic box, with indices beyond its sides. */
 struct window {
   int x, y, nx, ny;
 };
 
-/* What the subject has of f_i at a cell of the window, after an even number of steps. */
+/* f_i of the subject at a cell of the window, after an even number of steps. */
 static double value_at(const struct subject *subject, const struct window *window, int x, int y, int i)
 {
   const struct populations *p = &subject->flow.populations;
@@ -152,8 +153,8 @@ static double value_at(const struct subject *subject, const struct window *windo
   return populations_get(p, slot) + d2q9_weight[i];
 }
 
-/* The window's populations for the reference. With two arrays the subject has them collided, not yet streamed: the first
- * step of the subject starts from them streamed. */
+/* Copies the window's populations to the reference. The two-array subject stores collided populations, which are
+ * streamed here. */
 static void copy_window(const struct subject *subject, const struct window *window, struct reference *reference)
 {
   for (int y = 0; y < window->ny; y++)
@@ -165,7 +166,7 @@ static void copy_window(const struct subject *subject, const struct window *wind
       }
 }
 
-/* Largest difference over the cells of the window that are `margin` or more from its edge. */
+/* Largest difference over cells of the window at least `margin` from its edge. */
 static double largest_difference(const struct subject *subject, const struct window *window, int margin,
                                  const struct reference *reference)
 {
@@ -181,15 +182,16 @@ static double largest_difference(const struct subject *subject, const struct win
   return largest;
 }
 
-/* Steps of a check: even, and whole blocks. */
+/* Number of steps of a check: even, and whole blocks. */
 static int steps_to_check(const struct subject *subject)
 {
   const int depth = subject->way == BLOCKED ? subject->blocking.depth : 1;
   return depth < 6 ? 12 / depth * depth : depth;
 }
 
-/* The subject takes a few steps; in each of `count` windows it must agree with the reference, which has the window
- * alone: what lies beyond has by then reached no farther than one cell a step, unless the window is the whole box. */
+/* The subject takes a few steps and must agree with the reference in each of `count` windows. The reference has the
+ * window alone, so cells nearer to its edge than one cell a step are not compared, unless the window is the whole
+ * box. */
 static bool agrees(struct subject *subject, const struct window *windows, int count, double *largest,
                    struct status *status)
 {
@@ -227,7 +229,7 @@ static bool verify(struct subject *subject, const struct window *windows, int co
       ways[subject->way], subject->flow.adaptive ? "adaptive" : "constant", subject->flow.populations.nx, off);
 }
 
-/* Every way with the rates of every collision, over the whole of a small box. */
+/* Checks every way with the rates of every collision over a whole small box. */
 static bool verify_collisions(const struct sweep_kernel *kernel, struct status *status)
 {
   static const enum way ways[] = {IN_PLACE, TWO_ARRAYS, BLOCKED};
@@ -246,7 +248,7 @@ static bool verify_collisions(const struct sweep_kernel *kernel, struct status *
   return ok;
 }
 
-/* A subject as it was timed, at a corner of the box and in its middle, where threads share it. */
+/* Checks a timed subject at a corner of the box and in its middle, at the border of threads. */
 static bool verify_timed(struct subject *subject, struct status *status)
 {
   const struct populations *p = &subject->flow.populations;
@@ -262,8 +264,8 @@ static int compare_doubles(const void *a, const void *b)
   return (l > r) - (l < r);
 }
 
-/* A kernel in a box of size^2: as the program runs it, from one array to another, the plain pass, in place with constant
- * rates, and blocked in time. */
+/* Subjects of a kernel in a box of size^2: as in the program, from one array to another, the read-modify-write, in
+ * place with constant rates, and blocked in time. */
 enum { DEFAULT, CLASSIC, BARE, CONSTANT, DEEP, SUBJECTS = DEEP + DEPTHS };
 
 struct comparison {
@@ -271,7 +273,7 @@ struct comparison {
   int size;
   struct scene adaptive, constant;
   struct subject subjects[SUBJECTS];
-  int count; /* of subjects: blocked only as deep as threads can */
+  int count; /* of subjects: only depths possible for the threads */
   double rates[SUBJECTS];
 };
 
@@ -301,7 +303,7 @@ static void comparison_destroy(struct comparison *c)
   for (int k = 0; k < SUBJECTS; k++) subject_destroy(&c->subjects[k]);
 }
 
-/* Median rates, in million updates a second, of the subjects taken in turn. */
+/* Median rates of the subjects, timed in turn, in million updates a second. */
 static void measure(struct comparison *c, bool quick)
 {
   double samples[SUBJECTS][REPEATS];
@@ -352,7 +354,7 @@ static bool bench_kernel(const struct sweep_kernel *kernel, int size, bool block
   return ok;
 }
 
-/* All kernels that run here in the smallest box; beyond it the best of each precision, with blocking. */
+/* The smallest box: all kernels that this machine supports. Larger boxes: the best of each precision, with blocking. */
 static bool bench_size(int size, bool smallest, const struct bench_report *report, struct status *status)
 {
   bool runs, best[2] = {true, true};

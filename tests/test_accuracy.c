@@ -1,4 +1,4 @@
-/* Convergence against exact solutions, by the cases of the benchmark; and the spectral solver that is its other truth. */
+/* Convergence against exact solutions, by the cases of the benchmark; and its spectral reference solver. */
 #include "accuracy.h"
 #include "spectral.h"
 #include "square_array.h"
@@ -62,7 +62,7 @@ static double mean_square(struct spectral *spectral, enum spectral_quantity quan
   return sum / (POINTS * POINTS);
 }
 
-/* Which aliased products would not keep. */
+/* Aliased products would violate this. */
 Test(spectral, without_viscosity_energy_and_enstrophy_stay)
 {
   struct spectral *spectral = spectral_from(0, many_waves);
@@ -116,8 +116,8 @@ Test(order, is_two_for_a_wall_that_starts_to_move)
   for (int operator= 0; operator<OPERATOR_COUNT; operator++) check_order(&accuracy_couette, operator, 20);
 }
 
-/* How far the drag of a square array with discs of R = 5 is off the exact one, with the centre at the first `places` places
- * within a cell. */
+/* Relative errors of the drag of a square array of discs of R = 5, with the centre at the first `places` places in a
+ * cell. */
 static struct deviations drag_errors(enum accuracy_operator operator, const struct square_array * array,
                                      double viscosity, int places)
 {
@@ -134,7 +134,8 @@ static struct deviations drag_errors(enum accuracy_operator operator, const stru
   return all;
 }
 
-/* The paper's forms and rates do not keep to this (bench/README.md). Dilute arrays at small viscosity take too long here. */
+/* The paper's forms and rates have larger errors (bench/README.md). Dilute arrays at small viscosity take too long
+ * here. */
 Test(drag, of_square_arrays_is_right_by_default_within_2_percent_to_solid_fraction_0_3_and_5_percent_at_0_5)
 {
   static const double viscosities[] = {0.005, 0.02, 0.05, 1.0 / 6};
@@ -148,7 +149,7 @@ Test(drag, of_square_arrays_is_right_by_default_within_2_percent_to_solid_fracti
     }
 }
 
-/* At a viscosity of 1 with the centre on a corner of cells only: elsewhere the last 3e-5 takes 100,000 steps. */
+/* At viscosity 1 only with the centre on a corner of cells: at other places the last 3e-5 takes 100,000 steps. */
 Test(drag, of_slow_flow_does_not_depend_on_viscosity_in_the_midpoint_form_with_two_rates)
 {
   static const double viscosities[] = {0.05, 1.0 / 6, 1};
@@ -181,7 +182,7 @@ Test(steady, the_limit_of_a_decay_is_known_long_before_it_is_reached)
 {
   struct steady steady = {.enough = 1e-9};
   int look = 0;
-  while (look < 1000 && !steady_look(&steady, 3 - 2 * exp(-0.1 * look))) look++;
+  while (look < 1000 && !steady_add(&steady, 3 - 2 * exp(-0.1 * look))) look++;
   cr_expect_float_eq(steady.limit, 3, 1e-8, "%.12g after %d looks", steady.limit, look);
   cr_expect(look < 50, "%d looks", look);
 }

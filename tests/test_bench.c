@@ -1,5 +1,5 @@
-/* The benchmarks as a user runs them: every one that `delbm bench --list` names, quick, alone and all at once. Each verifies
- * what it measures, and ends with another code than 0 where that fails. */
+/* The benchmarks from outside: every benchmark of `delbm bench --list`, quick, alone and all together. A benchmark
+ * verifies its results and exits with a code other than 0 on failure. */
 #include "json.h"
 #include "shell.h"
 
@@ -7,7 +7,7 @@ TestSuite(bench, .init = shell_enter, .fini = shell_leave, .timeout = 900 * SLOW
 
 enum { NAMES = 64 };
 
-/* The names that the list has now. */
+/* Names of all benchmarks. */
 static int list_names(char names[NAMES][32])
 {
   char line[256];
@@ -22,7 +22,7 @@ static int list_names(char names[NAMES][32])
   return count;
 }
 
-/* That the report is JSON and has figures of these benchmarks. */
+/* Expects JSON with figures of the benchmarks named. */
 static void check_report(const char *path, char names[NAMES][32], int count)
 {
   char *text = json_read(path);
@@ -55,7 +55,7 @@ Test(bench, all_at_once_leave_one_report_with_the_figures_of_each)
   check_report("all.json", names, count);
 }
 
-/* A call for memory that fails ends the first benchmark, wherever that is; libgomp ends the program by itself. */
+/* A failed allocation ends the first benchmark; within libgomp it would end the program. */
 Test(bench, one_that_fails_is_named_in_a_valid_report_and_the_others_still_run)
 {
   int failures = 0;

@@ -1,4 +1,4 @@
-/* What is foreseen of a scene, against runs of it; and the cause that is found where a run diverges. */
+/* Estimates of scenes against runs; and the reported cause of a divergence. */
 #include "maps.h"
 #include "scenes.h"
 
@@ -74,8 +74,8 @@ Test(estimate, of_flow_without_walls_is_force_times_time)
   scene_clear(&scene);
 }
 
-/* The series for the array's drag is one in the solid fraction: at 0.4 the exact drag (Sangani & Acrivos 1982, table 1: 217.89
- * in place of 115.7) allows half of that speed. */
+/* The series for the array's drag is one in the solid fraction: at 0.4 the exact drag (Sangani & Acrivos 1982, table
+ * 1: 217.89 in place of 115.7) allows half of the estimated speed. */
 Test(estimate, of_flow_past_a_square_array_is_its_mean_speed_and_an_upper_bound_where_it_is_dense)
 {
   static const struct {
@@ -100,10 +100,10 @@ Test(estimate, is_zero_along_an_axis_that_is_not_periodic)
   scene_clear(&scene);
 }
 
-/* The speed that the scene leads to once the number is changed as advised. */
+/* The estimated speed after the advised change of the key. */
 static double speed_as_advised(struct scene *scene, const struct estimate *fastest, double *number)
 {
-  *number = copysign(fastest->most, *number);
+  *number = copysign(fastest->advised, *number);
   return estimate_fastest(scene, scene->run.steps).speed;
 }
 
@@ -143,7 +143,7 @@ static struct scene stream(double speed, double viscosity, double at)
   return scene;
 }
 
-/* The message of the run, which diverges within so many steps. */
+/* Runs the scene, which must diverge within `steps` steps. */
 static void diverge(struct scene *scene, int64_t steps, struct status *status, struct simulation_report *report)
 {
   struct simulation *simulation = start(scene);
@@ -226,7 +226,7 @@ Test(divergence, of_discs_too_heavy_for_the_fluid_names_gravity)
   expect_words(status.message, "the discs weigh 724 % of the fluid's pressure", true);
 }
 
-/* Whether a run is told to have diverged by its speed or by a cell that is not finite. */
+/* For divergence by speed and by a cell that is not finite. */
 Test(divergence, leaves_the_largest_mach_number_that_the_fluid_had_in_the_report)
 {
   struct scene scene = channel(24, 0.02, 1e-3);
@@ -256,7 +256,7 @@ Test(maps, of_the_shear_layer_complete_up_to_mach_0_2_from_the_least_relaxation_
       snprintf(map, sizeof map, "shear layer, %s", operators[k]);
       for (int mach = 0; mach < 3; mach++) failed += maps_verdict(report, map, viscosity_rows[v], mach) != 'c';
     }
-    const bool warned = 0.5 + 3 * viscosities[v] < estimate_least_tau - 1e-9;
+    const bool warned = 0.5 + 3 * viscosities[v] < estimate_min_tau - 1e-9;
     cr_expect_eq(failed > 0, warned, "viscosity %g", viscosities[v]);
   }
   free(report);
@@ -305,7 +305,7 @@ Test(maps, of_a_packing_fail_where_its_weight_is_foreseen_to_be_too_much)
     struct scene scene = scene_crowd(80, 80, 5, 11, 0.2);
     for (size_t i = 0; i < scene.particles.count; i++) scene.particles.discs[i].density = 1 + 0.01 * weights[c];
     cr_expect_eq(maps_verdict(report, "packing pressed by its weight", "0.25", c) != 'c',
-                 estimate_load(&scene, 1) > estimate_most_load, "weight %g", weights[c]);
+                 estimate_load(&scene, 1) > estimate_max_load, "weight %g", weights[c]);
     scene_clear(&scene);
   }
   free(report);

@@ -1,12 +1,13 @@
 /* A scene described in code, in place of a case file. Lattice units: lengths in cells, time in steps, the density of
- * the fluid at rest is 1. All zero is the default of everything but size and viscosity; a scene is checked as a case
- * file is, and what it leaves out (contacts, coupling, precision) can be set by the keys of case files (delbm.h). */
+ * the fluid at rest is 1. All zero is the default of everything but size and viscosity. A scene is checked like a
+ * case file; other settings (contacts, coupling, precision) are made by the keys of case files (`settings` in
+ * delbm.h). */
 #ifndef DELBM_SCENE_H
 #define DELBM_SCENE_H
 
 #include <stddef.h>
 
-/* The velocity is that of a wall along itself, or of the fluid at an inlet; cells/step. */
+/* A side of the box. Velocity of a wall along itself, or of the fluid at an inlet; cells/step. */
 enum delbm_side_type { DELBM_WALL, DELBM_PERIODIC, DELBM_INLET, DELBM_OUTLET };
 struct delbm_side {
   enum delbm_side_type type;
@@ -14,14 +15,14 @@ struct delbm_side {
 };
 
 enum delbm_motion {
-  DELBM_FREE,  /* by the forces on it */
-  DELBM_FIXED, /* in its place; it may spin */
-  DELBM_DRIVEN /* with its velocity and spin, which a callback may change in time (delbm_drive) */
+  DELBM_FREE,  /* moves by the forces on it */
+  DELBM_FIXED, /* at a constant position; may spin */
+  DELBM_DRIVEN /* at prescribed velocity and spin, constant or set by a callback (delbm_drive) */
 };
 
 struct delbm_disc {
   double radius;      /* cells */
-  double density;     /* relative to the fluid; a free disc needs one */
+  double density;     /* relative to the fluid; required for a free disc */
   double position[2]; /* centre, cells from the lower left corner of the box */
   double velocity[2]; /* cells/step */
   double angle;       /* radians, counter-clockwise */
@@ -34,7 +35,7 @@ struct delbm_scene {
   struct delbm_side left, right, bottom, top;
   double viscosity;  /* cells^2/step */
   double force[2];   /* on the fluid, per unit mass: cells/step^2 */
-  double gravity[2]; /* which a disc feels less its buoyancy: cells/step^2 */
+  double gravity[2]; /* on discs, with buoyancy: cells/step^2 */
   const struct delbm_disc *discs;
   size_t disc_count;
 };

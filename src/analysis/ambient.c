@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Takes the number of a line of run.json, if it is the member `name`; null is none. */
+/* Sets *value if the line of run.json is the member `name` with a number; null is no number. */
 static void take_member(const char *line, const char *name, double *value)
 {
   char *end;

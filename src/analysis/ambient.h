@@ -1,11 +1,11 @@
-/* The fluid that a disc's speed is measured against, each axis by itself:
+/* The velocity that a disc's speed is measured against, each axis by itself:
  *
  *   AMBIENT_STREAM   with an inlet: the velocity of the first inlet, the free stream
  *   AMBIENT_REST     walls close the axis: zero, as no mean flux is possible
  *   AMBIENT_MEAN     else: the mean velocity of the box at the end of the run, mean_ux and mean_uy of run.json
  *
- * The mean velocity is the fluid's momentum over its mass, cells inside discs included: the flux through a cross-section
- * over its height (the superficial velocity of a porous medium). */
+ * The mean velocity is the fluid's momentum over its mass, cells inside discs included: the flux through a
+ * cross-section over its height (the superficial velocity of a porous medium). */
 #ifndef DELBM_ANALYSIS_AMBIENT_H
 #define DELBM_ANALYSIS_AMBIENT_H
 
@@ -23,7 +23,7 @@ bool ambient_read_mean(const char *directory, double mean[2], struct status *sta
 
 struct ambient ambient_of(const struct scene *scene, const double mean[2]);
 
-/* What a speed is relative to, in words. */
+/* The reference of speeds, for messages. */
 const char *ambient_name(enum ambient_kind kind);
 
 #endif

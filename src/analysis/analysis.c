@@ -29,19 +29,20 @@ static void add(struct figures *f, const char *part, const char *name, double va
 
 static void add_body(struct figures *f, const struct body *b)
 {
-  const bool held = b->held;
+  const bool prescribed = b->prescribed;
   if (isfinite(b->speed.mean)) {
     add(f, "body", "first_step", (double)b->first, "steps", "start of the window that means are taken over");
     add(f, "body", "last_step", (double)b->last, "steps", "its end");
   }
-  add(f, "body", "speed", b->speed.mean, "cells/step", held ? "U, of the fluid relative to the disc" : "terminal, U");
-  if (!held) add(f, "body", "speed_spread", b->speed.deviation, "cells/step", "standard deviation of that");
+  add(f, "body", "speed", b->speed.mean, "cells/step",
+      prescribed ? "U, of the fluid relative to the disc" : "terminal, U");
+  if (!prescribed) add(f, "body", "speed_spread", b->speed.deviation, "cells/step", "standard deviation of that");
   if (isfinite(b->fastest)) {
     add(f, "body", "fastest", b->fastest, "cells/step", "largest speed along gravity's axis");
     add(f, "body", "fastest_step", (double)b->fastest_step, "steps", "when");
   }
   add(f, "body", "reynolds", b->reynolds, "-", "2 U R/nu");
-  add(f, "body", "drag", b->drag, "-", held ? "C_D = F/(rho U^2 R)" : "C_D = pi R g (rho_s - rho)/(rho U^2)");
+  add(f, "body", "drag", b->drag, "-", prescribed ? "C_D = F/(rho U^2 R)" : "C_D = pi R g (rho_s - rho)/(rho U^2)");
   add(f, "body", "drag_printed", b->drag_printed, "-", "8 R g (rho_s - rho)/(3 rho U^2), as the paper prints it");
   add(f, "body", "drag_spread", b->drag_spread, "-", "standard deviation of C_D");
   add(f, "body", "resistance", b->resistance, "-", "K = F/(rho nu U)");
@@ -50,7 +51,7 @@ static void add_body(struct figures *f, const struct body *b)
   add(f, "body", "torque", b->torque.mean, "-", "C_M = T/(rho U^2 R^2)");
   add(f, "body", "spin", b->spin, "-", "omega R/U");
   add(f, "body", "strouhal", b->strouhal, "-", "2 f R/U of the shedding");
-  add(f, "body", "swing", b->swing, "-", held ? "amplitude of C_L" : "amplitude of the lateral velocity over U");
+  add(f, "body", "swing", b->swing, "-", prescribed ? "amplitude of C_L" : "amplitude of the lateral velocity over U");
   add(f, "body", "swing_growth", b->growth, "-", "of that, from the first to the last third; 1: shedding is developed");
 }
 
@@ -78,7 +79,7 @@ static void add_settling(struct figures *f, const struct settling *s)
   add(f, "settling", "interface_r2", s->fall.r2, "-", "R^2 of that line");
   add(f, "settling", "front_speed", s->rise.slope, "cells/step", "rise of the sediment's surface meanwhile");
   add(f, "settling", "front_r2", s->rise.r2, "-", "R^2 of that line");
-  /* what arrives from above is what the bed takes: phi0 (u + s) = phi_bed s */
+  /* flux of discs through the front (Kynch): phi0 (u + s) = phi_bed s */
   add(f, "settling", "front_speed_kynch", -s->fall.slope * s->initial / (s->bed - s->initial), "cells/step",
       "of a jump from the initial concentration to the bed's");
   add(f, "settling", "front_width", s->sharpness, "cells", "over which half of that change happens");
@@ -140,7 +141,7 @@ void analysis_destroy(struct analysis *a)
   *a = (struct analysis){0};
 }
 
-/* What a reader of the figures of settling must know; empty: nothing. */
+/* Warning to the reader of the settling figures; may be empty. */
 static const char *settling_note(const struct settling *s)
 {
   return s->settled ? "" : "no sediment: the interface still falls at the end of the run";

@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* Unit vector along the stream, or along gravity, and the one a quarter turn counter-clockwise from it. */
+/* Unit vector along the stream, or along gravity, and the unit vector a quarter turn counter-clockwise from it. */
 struct frame {
   double along[2], across[2];
 };
@@ -41,7 +41,7 @@ static bool is_moving(const double vector[2])
   return vector[0] != 0 || vector[1] != 0;
 }
 
-/* True where something drives fluid past discs that are held. */
+/* True where fluid is driven past fixed or driven discs. */
 static bool has_stream(const struct scene *scene)
 {
   const struct disc_spec *disc = &scene->particles.discs[0];
@@ -100,7 +100,7 @@ static void component(const struct work *w, enum history_column x, const double 
     to[k] = factor * component_at(w->history, w->window.first + k, x, direction);
 }
 
-/* The series is of the snapshots of the window. */
+/* `series` has one value for each snapshot of the window. */
 static bool add_shedding(struct body *b, const struct work *w, const double *series, double unit, struct status *status)
 {
   struct oscillation found;
@@ -108,7 +108,7 @@ static bool add_shedding(struct body *b, const struct work *w, const double *ser
   if (!(b->reynolds > body_steady_below) || count < 2) return true;
   if (!fit_oscillation(series, count, &found, status)) return false;
   const double interval = (double)(w->history->step[first + count - 1] - w->history->step[first]) / (double)(count - 1);
-  if (found.frequency * (double)count < body_least_cycles || found.amplitude < 1e-3 * unit) return true;
+  if (found.frequency * (double)count < body_min_cycles || found.amplitude < 1e-3 * unit) return true;
   b->strouhal = 2 * w->radius * found.frequency / (interval * b->speed.mean);
   b->swing = found.amplitude / unit;
   b->growth = fit_spread(series + count - count / 3, count / 3).deviation / fit_spread(series, count / 3).deviation;
@@ -144,7 +144,7 @@ static double room_ahead(const struct work *w, int axis, size_t snapshot)
   return velocity < 0 ? at : w->scene->domain.size[axis] - at;
 }
 
-/* Speed through the fluid, of all snapshots; returns how many there are before a side is near. */
+/* Speed through the fluid at all snapshots; returns the number of snapshots before a side is near. */
 static size_t speeds_of(const struct body *b, struct work *w, int axis)
 {
   const struct history *h = w->history;
@@ -156,7 +156,8 @@ static size_t speeds_of(const struct body *b, struct work *w, int axis)
   return fall;
 }
 
-/* Turns the frame so that the last quarter of the fall has a positive speed. True if that is the sense of the weight. */
+/* Turns the frame so that the last quarter of the fall has a positive speed. True if the disc then moves with its
+ * weight. */
 static bool turn_frame(struct work *w, size_t fall)
 {
   const size_t first = fall - (fall + 3) / 4;
@@ -192,18 +193,18 @@ static void note_absence(struct body *b, const struct work *w, const struct plat
 {
   const double diameters = fall > 0 ? w->way[fall - 1] / (2 * w->radius) : 0, percent = 100 * p->drift;
   const size_t size = sizeof b->note;
-  if (p->kind == PLATEAU_SHORT && diameters >= body_least_way)
+  if (p->kind == PLATEAU_SHORT && diameters >= body_min_way)
     snprintf(b->note, size, "no terminal speed: fewer than three rows of the fall; output.every is too long");
   else if (p->kind == PLATEAU_SHORT)
     snprintf(b->note, size,
              "no terminal speed: %.2g diameters of fall before the run ends or a side is near; %g are needed",
-             diameters, body_least_way);
+             diameters, body_min_way);
   else if (fabs(percent) <= 100 * plateau_tolerance)
     snprintf(b->note, size, "no terminal speed: the speed fluctuates too much over the last %g diameters",
-             body_least_way);
+             body_min_way);
   else
     snprintf(b->note, size, "no terminal speed: still %s, by %.2g %% over the last %g diameters",
-             percent > 0 ? "accelerating" : "slowing down", fabs(percent), body_least_way);
+             percent > 0 ? "accelerating" : "slowing down", fabs(percent), body_min_way);
 }
 
 /* A speed that changes for good after the plateau. */
@@ -211,7 +212,7 @@ static void note_change(struct body *b, const struct work *w, const struct plate
 {
   const size_t end = p->first + p->count;
   size_t rest = fall;
-  while (rest > end && w->way[fall - 1] - w->way[rest - 1] < 2 * w->radius * body_least_way) rest--;
+  while (rest > end && w->way[fall - 1] - w->way[rest - 1] < 2 * w->radius * body_min_way) rest--;
   if (rest <= end) return;
   const double after = fit_spread(w->speed + rest, fall - rest).mean / b->speed.mean - 1;
   snprintf(b->note, sizeof b->note,
@@ -235,7 +236,7 @@ static bool analyse_free(struct body *b, struct work *w, struct status *status)
   w->frame = frame_of_fall(w->scene);
   const int axis = w->frame.along[0] == 0;
   b->relative = b->ambient.kind[axis];
-  b->ambient.velocity[!axis] = 0; /* across gravity it does not count, known or not */
+  b->ambient.velocity[!axis] = 0; /* the component across gravity does not enter U */
   if (isnan(b->ambient.velocity[axis])) {
     snprintf(b->note, sizeof b->note, "no speed: %s", unknown_mean);
     return true;
@@ -245,7 +246,7 @@ static bool analyse_free(struct body *b, struct work *w, struct status *status)
   add_ways(w);
   find_fastest(b, w);
   struct plateau plateau;
-  if (!plateau_find(w->way, w->speed, fall, 2 * w->radius * body_least_way, &plateau, status)) return false;
+  if (!plateau_find(w->way, w->speed, fall, 2 * w->radius * body_min_way, &plateau, status)) return false;
   if (plateau.kind != PLATEAU_FOUND) {
     note_absence(b, w, &plateau, fall);
     return true;
@@ -263,7 +264,7 @@ static bool analyse_free(struct body *b, struct work *w, struct status *status)
   return add_shedding(b, w, w->way, b->speed.mean, status);
 }
 
-/* A window whose second half differs from its first by more than a hundredth is not steady. */
+/* Notes a window that is not steady: mean drags of its halves that differ by more than 1 %. */
 static void note_drift(struct body *b, const double *drag, size_t count)
 {
   if (count < 2) return;
@@ -274,7 +275,7 @@ static void note_drift(struct body *b, const double *drag, size_t count)
              100 * (late - early) / fabs(b->drag));
 }
 
-static bool analyse_held(struct body *b, struct work *w, struct status *status)
+static bool analyse_prescribed(struct body *b, struct work *w, struct status *status)
 {
   const struct disc_spec *disc = &w->scene->particles.discs[0];
   double stream[2];
@@ -312,7 +313,7 @@ bool body_analyse(struct body *b, const struct scene *scene, const double mean[2
                   struct status *status)
 {
   const struct spread unknown = {NAN, NAN};
-  *b = (struct body){.held = scene->particles.discs[0].motion != DISC_FREE,
+  *b = (struct body){.prescribed = scene->particles.discs[0].motion != DISC_FREE,
                      .ambient = ambient_of(scene, mean),
                      .first = history->step[0],
                      .last = history->step[history->snapshots - 1],
@@ -336,7 +337,7 @@ bool body_analyse(struct body *b, const struct scene *scene, const double mean[2
                    .radius = scene_mean_radius(scene),
                    .way = series,
                    .speed = series + history->snapshots};
-  const bool ok = b->held ? analyse_held(b, &w, status) : analyse_free(b, &w, status);
+  const bool ok = b->prescribed ? analyse_prescribed(b, &w, status) : analyse_free(b, &w, status);
   free(series);
   return ok;
 }

@@ -42,7 +42,7 @@ static struct oscillation strongest(fftw_complex *line, size_t count)
   const double after = log(hypot(line[at + 1][0], line[at + 1][1]) / here);
   const double bend = before + after;
   double shift = bend < 0 && isfinite(bend) ? 0.5 * (before - after) / bend : 0;
-  if (at == 1) shift = fmax(shift, 0); /* the line before it holds what is left of the mean */
+  if (at == 1) shift = fmax(shift, 0); /* the spectral line before it has the residual mean */
   const double peak = here * exp(isfinite(bend) ? -0.25 * (before - after) * shift : 0);
   return (struct oscillation){((double)at + shift) / (double)count, 4 * peak / (double)count};
 }

@@ -6,14 +6,14 @@
 
 #include <stddef.h>
 
-/* y = intercept + slope x by least squares; r2 is the share of the variance of y that the line explains. All NAN for
- * fewer than two points. */
+/* y = intercept + slope x by least squares; r2 is the fraction of the variance of y that the line explains. All NAN
+ * for fewer than two points. */
 struct line {
   double slope, intercept, r2;
 };
 struct line fit_line(const double *x, const double *y, size_t count);
 
-/* Mean and standard deviation (of the whole, not of a sample). */
+/* Mean and standard deviation (of the population, not a sample: divided by count). */
 struct spread {
   double mean, deviation;
 };

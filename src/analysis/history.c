@@ -12,12 +12,12 @@ static const char *const header = "step,id,x,y,vx,vy,omega,angle,fx,fy,torque,co
 
 enum { LINE_LENGTH = 1024 };
 
-/* A table being read: rows come in order, so that a row's place is its number. */
+/* A table being read. Rows are in order, so that the position of a row is its number. */
 struct reader {
   FILE *stream;
   const char *path;
   int64_t line;
-  bool more; /* columns, in SI, which are passed over */
+  bool more; /* columns, in SI, which are skipped */
   struct history *history;
   size_t rows;
   size_t step_capacity, value_capacity;

@@ -31,9 +31,8 @@ struct history {
   double *values; /* [snapshots][discs][HISTORY_COLUMNS] */
 };
 
-/* Reads the table at `path` of a scene with `discs` discs. A last snapshot that was cut short is left out. Fails
- * (DELBM_IO) where the file cannot be read, and (DELBM_INVALID) with its line where it is not such a table or has no
- * whole snapshot. */
+/* Reads the table at `path` of a scene with `discs` discs. An incomplete last snapshot is left out. DELBM_IO if the
+ * file cannot be read; DELBM_INVALID, with the line, if it is no such table or has no complete snapshot. */
 bool history_read(struct history *history, const char *path, size_t discs, struct status *status);
 void history_clear(struct history *history);
 

@@ -37,8 +37,8 @@ static double gap(const struct work *w, size_t n)
   return hypot(aside(w, n), height(w, n)) - disc[0].radius - disc[1].radius;
 }
 
-/* How much faster trailing falls, beyond the part of its speed that counts as equal. */
-static double closing(const struct work *w, size_t n)
+/* Excess of the trailing disc's speed of fall, less the tolerance pair_even. */
+static double approach_speed(const struct work *w, size_t n)
 {
   const double trailing = value(w, n, w->trailing, HISTORY_VY);
   return value(w, n, w->leading, HISTORY_VY) - trailing - pair_even * fabs(trailing);
@@ -90,8 +90,8 @@ static double wall_distance(const struct work *w, size_t n)
   return fmin(x, w->scene->domain.size[0] - x);
 }
 
-/* What follows the kiss; from snapshot `kiss` on. */
-static void follow(struct pair *p, const struct work *w, size_t kiss)
+/* Events after the kiss, from snapshot `kiss` on. */
+static void after_kiss(struct pair *p, const struct work *w, size_t kiss)
 {
   const struct history *h = w->history;
   const size_t left = extreme(w, kiss, h->snapshots, w->leading, HISTORY_VX, -1);
@@ -105,7 +105,7 @@ static void follow(struct pair *p, const struct work *w, size_t kiss)
     if (wall_distance(w, n) < wall_distance(w, nearest)) nearest = n;
   p->wall_time = (double)h->step[nearest];
   p->wall_distance = wall_distance(w, nearest);
-  /* it comes to rest on the bottom in the end, which is not meant */
+  /* without the final rest on the bottom */
   const size_t slow = extreme(w, thrown, nearest + 1, w->leading, HISTORY_VY, 1);
   p->slow_time = (double)h->step[slow];
   p->slow_speed = value(w, slow, w->leading, HISTORY_VY);
@@ -129,9 +129,9 @@ struct pair pair_analyse(const struct scene *scene, const struct history *histor
   p.draft_speed = value(&w, draft, trailing, HISTORY_VY);
   p.kiss_time = step_at(&w, kiss);
   p.offset = fabs(between(&w, kiss, trailing, HISTORY_X) - between(&w, kiss, 1 - trailing, HISTORY_X));
-  p.even_time = step_at(&w, crossing(&w, closing, draft));
+  p.even_time = step_at(&w, crossing(&w, approach_speed, draft));
   p.tumble_time = step_at(&w, tumble);
   p.tumble_height = between(&w, tumble, trailing, HISTORY_Y);
-  if (!isnan(kiss)) follow(&p, &w, (size_t)kiss);
+  if (!isnan(kiss)) after_kiss(&p, &w, (size_t)kiss);
   return p;
 }

@@ -1,6 +1,6 @@
-/* Two discs that settle one above the other: when they draft, kiss and tumble. Heights are against gravity along -y;
- * `trailing` is the disc that starts higher. Times are in steps, found between snapshots by a straight line; NAN for what
- * does not happen. */
+/* Sedimentation of two discs, one above the other: drafting, kissing, tumbling. Heights are against gravity along
+ * -y; `trailing` is the disc that starts higher. Times are in steps, found between snapshots by a straight line; NAN
+ * for an event that does not occur. */
 #ifndef DELBM_ANALYSIS_PAIR_H
 #define DELBM_ANALYSIS_PAIR_H
 
@@ -11,7 +11,7 @@
 static const double pair_even = 0.02;
 
 struct pair {
-  double draft_time, draft_speed;    /* trailing falls fastest before they touch, and that velocity (vy < 0) */
+  double draft_time, draft_speed;    /* largest speed of trailing before the kiss; its vy */
   double kiss_time;                  /* centres first less than the sum of the radii apart */
   double even_time;                  /* speeds are equal after drafting */
   double tumble_time, tumble_height; /* trailing first no higher than leading, and where */

@@ -33,16 +33,16 @@ static bool is_level(const struct search *s, size_t first, size_t end)
   return high - low <= plateau_tolerance * fabs(mean_of(s, first, end));
 }
 
-static bool is_long(const struct search *s, size_t first, size_t end, double least)
+static bool is_long(const struct search *s, size_t first, size_t end, double min_way)
 {
-  return end >= first + 3 && s->way[end - 1] - s->way[first] >= least;
+  return end >= first + 3 && s->way[end - 1] - s->way[first] >= min_way;
 }
 
-/* Latest beginning of a stretch to the end that is long enough; count: none is. */
-static size_t last_long(const struct search *s, double least)
+/* Latest start of a stretch to the end that is long enough; `count` if there is none. */
+static size_t last_long(const struct search *s, double min_way)
 {
   size_t first = s->count;
-  while (first > 0 && !is_long(s, first - 1, s->count, least)) first--;
+  while (first > 0 && !is_long(s, first - 1, s->count, min_way)) first--;
   return first > 0 ? first - 1 : s->count;
 }
 
@@ -53,27 +53,27 @@ static struct plateau stretch(const struct search *s, enum plateau_kind kind, si
   return (struct plateau){kind, first, end - first, (third[2] - third[0]) / mean_of(s, first, end)};
 }
 
-static struct plateau find(const struct search *s, double least)
+static struct plateau find(const struct search *s, double min_way)
 {
   const size_t places = s->count < PLACES ? s->count : PLACES;
   for (size_t last = places; last > 0; last--)
     for (size_t from = 0; from < last; from++) {
       const size_t first = from * s->count / places, end = last * s->count / places;
-      if (is_long(s, first, end, least) && is_level(s, first, end)) return stretch(s, PLATEAU_FOUND, first, end);
+      if (is_long(s, first, end, min_way) && is_level(s, first, end)) return stretch(s, PLATEAU_FOUND, first, end);
     }
-  const size_t first = last_long(s, least);
+  const size_t first = last_long(s, min_way);
   if (first == s->count) return (struct plateau){.kind = PLATEAU_SHORT, .count = s->count};
   return stretch(s, PLATEAU_CHANGING, first, s->count);
 }
 
-bool plateau_find(const double *way, const double *speed, size_t count, double least, struct plateau *plateau,
+bool plateau_find(const double *way, const double *speed, size_t count, double min_way, struct plateau *plateau,
                   struct status *status)
 {
   double *sum = memory_allocate(count + 1, sizeof *sum, "the search for a plateau", status);
   if (!sum) return false;
   sum[0] = 0;
   for (size_t k = 0; k < count; k++) sum[k + 1] = sum[k] + speed[k];
-  *plateau = find(&(struct search){way, sum, count}, least);
+  *plateau = find(&(struct search){way, sum, count}, min_way);
   free(sum);
   return true;
 }

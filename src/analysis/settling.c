@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* What the parts of the analysis share while it is made. */
+/* Data of the analysis in progress. */
 struct work {
   const struct scene *scene;
   const struct history *history;
@@ -19,14 +19,14 @@ struct work {
   unsigned *count; /* [layers] scratch */
   double *scratch; /* [discs] */
   size_t squares[2];
-  unsigned (*held)[SETTLING_BANDS]; /* [squares] discs of each band */
+  unsigned (*band_count)[SETTLING_BANDS]; /* [squares] discs of each band */
 };
 
 bool settling_applies(const struct scene *scene)
 {
   size_t free_discs = 0;
   for (size_t i = 0; i < scene->particles.count; i++) free_discs += scene->particles.discs[i].motion == DISC_FREE;
-  return free_discs == scene->particles.count && free_discs >= SETTLING_LEAST && scene->particles.gravity[1] < 0 &&
+  return free_discs == scene->particles.count && free_discs >= SETTLING_MIN && scene->particles.gravity[1] < 0 &&
          scene->particles.gravity[0] == 0;
 }
 
@@ -38,7 +38,7 @@ static double interface_of(const struct work *w, size_t snapshot)
   return fit_spread(w->scratch + discs - highest, highest).mean;
 }
 
-/* Area of a disc below the height `level`: the part beyond a wall that it has sunk into. */
+/* Area of a disc below the height `level`: a circular segment. */
 static double area_below(double radius, double y, double level)
 {
   return lens_of_wall(radius, y - level).area;
@@ -50,7 +50,7 @@ static double layer_area(const struct work *w, size_t layer)
   return fmin(w->to->layer, w->to->box - (double)layer * w->to->layer) * w->scene->domain.size[0];
 }
 
-/* Layer that holds a disc's centre. */
+/* Layer of a disc's centre. */
 static size_t layer_of(const struct work *w, size_t snapshot, size_t disc)
 {
   const double place = history_at(w->history, snapshot, disc, HISTORY_Y) / w->to->layer;
@@ -119,22 +119,23 @@ static double mixing_of(const struct work *w, size_t snapshot)
   const double discs = (double)w->history->discs, p = 1.0 / SETTLING_BANDS;
   double variance = 0, filled = 0;
   for (size_t q = 0; q < squares; q++)
-    for (int k = 0; k < SETTLING_BANDS; k++) w->held[q][k] = 0;
-  for (size_t i = 0; i < w->history->discs; i++) w->held[square_of(w, snapshot, i)][w->band[i]]++;
+    for (int k = 0; k < SETTLING_BANDS; k++) w->band_count[q][k] = 0;
+  for (size_t i = 0; i < w->history->discs; i++) w->band_count[square_of(w, snapshot, i)][w->band[i]]++;
   for (size_t q = 0; q < squares; q++) {
     unsigned all = 0;
-    for (int k = 0; k < SETTLING_BANDS; k++) all += w->held[q][k];
+    for (int k = 0; k < SETTLING_BANDS; k++) all += w->band_count[q][k];
     if (all == 0) continue;
     filled++;
     for (int k = 0; k < SETTLING_BANDS; k++)
-      variance += all / discs * (w->held[q][k] / (double)all - p) * (w->held[q][k] / (double)all - p) / SETTLING_BANDS;
+      variance += all / discs * (w->band_count[q][k] / (double)all - p) * (w->band_count[q][k] / (double)all - p) /
+                  SETTLING_BANDS;
   }
-  /* each filled square adds p (1 - p)/n_q times its weight n_q/N: chance leaves p (1 - p) filled/N */
+  /* a random square of n_q discs has variance p (1 - p)/n_q and weight n_q/N: in all p (1 - p) filled/N */
   const double apart = p * (1 - p), chance = apart * filled / discs;
   return chance < apart ? (apart - variance) / (apart - chance) : 1;
 }
 
-/* Height at which a profile, coming from below the interface downwards, first reaches `level`. */
+/* Height at which a profile first reaches `level`, searched from the interface downwards. */
 static double height_of(const struct settling *s, size_t snapshot, double level)
 {
   const double *row = s->concentration + snapshot * s->layers;
@@ -197,7 +198,7 @@ static void fit_front(struct settling *s, double *columns)
   s->sharpness = count ? width / (double)count : NAN;
 }
 
-/* The lines through interface and surface of the sediment, of which there is one only once all has settled. */
+/* The lines through the interface and, once the bed is at rest, through the surface of the sediment. */
 static bool fit_fronts(struct settling *s, struct status *status)
 {
   double *columns = memory_allocate(2 * s->snapshots, sizeof *columns, "the fits", status);
@@ -214,7 +215,7 @@ static bool fit_fronts(struct settling *s, struct status *status)
   return true;
 }
 
-/* Line through Lambda over height/box height, of the layers whose middles lie between two heights. */
+/* Line through Lambda over height/box height, of the layers with middles between two heights. */
 static struct line lambda_line(const struct settling *s, size_t snapshot, double low, double high, double *columns)
 {
   double *height = columns, *lambda = columns + s->layers;
@@ -228,7 +229,8 @@ static struct line lambda_line(const struct settling *s, size_t snapshot, double
   return fit_line(height, lambda, count);
 }
 
-/* The lines through Lambda in the sediment at the end, and above it when the interface has fallen half of its way. */
+/* The lines through Lambda in the final sediment, and above the sediment when the interface has fallen half of its
+ * way. */
 static bool fit_lambda(struct settling *s, struct status *status)
 {
   s->lambda_bed = s->lambda_above = (struct line){NAN, NAN, NAN};
@@ -247,11 +249,11 @@ static bool fit_lambda(struct settling *s, struct status *status)
 
 static double fastest(const struct history *h)
 {
-  double most = 0;
+  double max = 0;
   for (size_t i = 0; i < h->discs; i++)
-    most = fmax(most,
-                hypot(history_at(h, h->snapshots - 1, i, HISTORY_VX), history_at(h, h->snapshots - 1, i, HISTORY_VY)));
-  return most;
+    max = fmax(max,
+               hypot(history_at(h, h->snapshots - 1, i, HISTORY_VX), history_at(h, h->snapshots - 1, i, HISTORY_VY)));
+  return max;
 }
 
 /* Sorts the discs into bands by their height at the first snapshot. */
@@ -288,7 +290,7 @@ static bool allocate(struct work *w, struct status *status)
          (w->zeta = memory_allocate(discs, sizeof *w->zeta, "the layers", status)) &&
          (w->count = memory_allocate(s->layers, sizeof *w->count, "the layers", status)) &&
          (w->scratch = memory_allocate(discs, sizeof *w->scratch, "the heights", status)) &&
-         (w->held = memory_allocate(w->squares[0] * w->squares[1], sizeof *w->held, "the mixing", status));
+         (w->band_count = memory_allocate(w->squares[0] * w->squares[1], sizeof *w->band_count, "the mixing", status));
 }
 
 bool settling_create(struct settling *s, const struct scene *scene, const struct history *history,
@@ -321,7 +323,7 @@ bool settling_create(struct settling *s, const struct scene *scene, const struct
   free(w.zeta);
   free(w.count);
   free(w.scratch);
-  free(w.held);
+  free(w.band_count);
   if (!ok) settling_destroy(s);
   return ok;
 }

@@ -22,9 +22,9 @@ bool api_allows_motion(const struct delbm_simulation *s, size_t disc, const doub
                        struct status *status)
 {
   const struct disc_spec *spec = &s->scene.particles.discs[disc];
-  if (!(hypot(velocity[0], velocity[1]) + fabs(spin) * spec->radius <= scene_most_speed))
+  if (!(hypot(velocity[0], velocity[1]) + fabs(spin) * spec->radius <= scene_max_speed))
     return status_fail(status, DELBM_USAGE, "disc %zu: velocity (%g, %g), spin %g: |velocity| + |spin| radius > %g",
-                       disc, velocity[0], velocity[1], spin, scene_most_speed);
+                       disc, velocity[0], velocity[1], spin, scene_max_speed);
   if (spec->motion == DISC_FIXED && (velocity[0] != 0 || velocity[1] != 0))
     return status_fail(status, DELBM_USAGE, "disc %zu: velocity (%g, %g) of a fixed disc", disc, velocity[0],
                        velocity[1]);

@@ -41,7 +41,7 @@ static bool allows_fluid(const struct delbm_simulation *s, const double *rho, co
 {
   const int nx = s->scene.domain.size[0];
   for (int64_t k = 0; k < scene_cells(&s->scene); k++)
-    if (!(rho[k] > 0 && isfinite(rho[k]) && hypot(ux[k], uy[k]) <= scene_most_speed))
+    if (!(rho[k] > 0 && isfinite(rho[k]) && hypot(ux[k], uy[k]) <= scene_max_speed))
       return status_fail(status, DELBM_USAGE, "cell (%d, %d): density %g, velocity (%g, %g)", (int)(k % nx),
                          (int)(k / nx), rho[k], ux[k], uy[k]);
   return true;

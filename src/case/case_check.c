@@ -193,9 +193,9 @@ static void check_disc(struct draft *draft, size_t i)
   if (disc->motion == DISC_FIXED && (velocity[0] != 0 || velocity[1] != 0))
     draft_refuse(draft, disc_path(path, i, "velocity"), "none for a fixed disc, which may only spin");
   double speed = hypot(velocity[0], velocity[1]) + fabs(disc->spin) * disc->radius;
-  if (speed > scene_most_speed)
+  if (speed > scene_max_speed)
     draft_refuse(draft, disc_path(path, i, disc->spin != 0 ? "spin" : "velocity"),
-                 "|velocity| + |spin| radius <= %g, not %.3g, for the Mach number's sake", scene_most_speed, speed);
+                 "|velocity| + |spin| radius <= %g, not %.3g, for the Mach number's sake", scene_max_speed, speed);
 }
 
 /* A centre and whose it is. */

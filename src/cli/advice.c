@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stdio.h>
 
-/* Maps "shear layer": a ghost mode that s_q hardly damps, with e relaxed at another rate than the stress. */
+/* Maps "shear layer": a ghost mode with little damping by s_q, at different rates s_e and s_nu. */
 static void advise_rates(const struct scene *scene)
 {
   const struct rates *rates = &scene->fluid.rates;
@@ -29,8 +29,8 @@ static void advise_solve(const struct scene *scene)
         disc, scene->particles.discs[disc].density);
 }
 
-/* At small viscosity a disc of a few cells holds less fluid than its area, which is what its buoyancy and inertia are taken
- * from: what is left of the inertia of a light one is negative. */
+/* At small viscosity the fluid inside a disc of a few cells has less mass than pi R^2, on which buoyancy and inertia
+ * are based: the effective inertia of a light disc is negative. */
 static void advise_light(const struct scene *scene)
 {
   const double viscosity = scene->fluid.viscosity;
@@ -56,7 +56,7 @@ static void advise_form(const struct scene *scene)
            "midpoint is within 2 %% at any viscosity (bench/README.md, drag)\n");
 }
 
-/* True if a side that moves passes over a part of the disc. */
+/* True if the disc overlaps a moving wall. */
 static bool is_under_moving_side(const struct scene *scene, const struct disc_spec *disc)
 {
   for (enum side_name name = 0; name < SIDE_COUNT; name++) {
@@ -68,8 +68,8 @@ static bool is_under_moving_side(const struct scene *scene, const struct disc_sp
   return false;
 }
 
-/* Fluid inside discs is not damped in owen's form, and little in the unified one: maps "fixed disc that spins" and "fixed disc
- * under a lid", and piles. */
+/* owen has no damping of the fluid inside discs, unified little: maps "fixed disc that spins" and "fixed disc under
+ * a lid", and piles. */
 static void advise_form_inside(const struct scene *scene)
 {
   const double least_rim = 0.1; /* of unified */
@@ -105,27 +105,27 @@ static void advise_substeps(const struct scene *scene)
            scene->contact.substeps, needed);
 }
 
-/* Map "packing": discs held up by the pressure of a fluid that has not so much of it. */
+/* Map "packing": weight of discs beyond the pressure that the fluid can supply. */
 static void advise_weight(const struct scene *scene)
 {
   for (int axis = 0; axis < 2; axis++) {
     const double part = estimate_load(scene, axis);
-    if (part < estimate_most_load) continue;
+    if (part < estimate_max_load) continue;
     printf("  note: the discs weigh %.0f %% of the fluid's pressure on the side below; it rings or diverges; better: "
            "particles.gravity <= %.2g cells/step^2, and more steps (bench/STABILITY.md)\n",
-           100 * part, fabs(scene->particles.gravity[axis]) * estimate_most_load / part);
+           100 * part, fabs(scene->particles.gravity[axis]) * estimate_max_load / part);
   }
 }
 
-static bool has_held_discs(const struct scene *scene)
+static bool has_prescribed_discs(const struct scene *scene)
 {
-  bool held = false;
-  for (size_t i = 0; i < scene->particles.count; i++) held |= scene->particles.discs[i].motion != DISC_FREE;
-  return held;
+  bool found = false;
+  for (size_t i = 0; i < scene->particles.count; i++) found |= scene->particles.discs[i].motion != DISC_FREE;
+  return found;
 }
 
-/* Along a periodic axis what gravity adds accelerates all there is, but for what walls along the axis, or discs that are
- * held, take: the speed of a flow between plates is the most. */
+/* Along a periodic axis the weight accelerates fluid and discs without bound, unless walls along the axis or fixed
+ * discs resist: upper bound from plane Poiseuille flow. */
 static void advise_fall(const struct scene *scene, const double weight[2])
 {
   const double cells = (double)scene->domain.size[0] * scene->domain.size[1], *force = scene->fluid.force;
@@ -137,12 +137,12 @@ static void advise_fall(const struct scene *scene, const double weight[2])
     if (!scene_is_periodic(scene, !axis))
       fall[axis] = fmin(fall[axis], pull * width * width / (8 * scene->fluid.viscosity));
   }
-  const double most = fmax(fall[0], fall[1]);
-  if (most > 0.05 && !has_held_discs(scene))
+  const double max_fall = fmax(fall[0], fall[1]);
+  if (max_fall > 0.05 && !has_prescribed_discs(scene))
     printf(
         "  note: nothing holds the box along its periodic sides against the weight of its discs: within the run all of "
         "it may gain %.2g cells/step; fluid.force: [%.9g, %.9g] holds it\n",
-        most, fall[0] > 0 ? 0 - weight[0] / cells : force[0], fall[1] > 0 ? 0 - weight[1] / cells : force[1]);
+        max_fall, fall[0] > 0 ? 0 - weight[0] / cells : force[0], fall[1] > 0 ? 0 - weight[1] / cells : force[1]);
 }
 
 void print_advice(const struct scene *scene)

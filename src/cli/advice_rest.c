@@ -1,5 +1,5 @@
-/* What comes of discs that gravity brings to rest at a side of the box within the run: a pile, whose fluid goes on carrying a
- * part of the weight, and overlap under load. */
+/* Warnings about discs that come to rest on a side within the run: a pile in which the pore pressure still supports
+ * a part of the weight, and overlap under load. */
 #include "cli/advice.h"
 
 #include "contact/law.h"
@@ -8,12 +8,12 @@
 #include <math.h>
 #include <stdio.h>
 
-/* Solid fraction of discs poured at random, and the exponent of hindered settling, u = u_alone (1 - fraction)^n (Richardson &
- * Zaki 1954; 4.8 measured in the case `settling`). */
+/* Solid fraction of discs poured at random, and the exponent of hindered settling, u = u_alone (1 - fraction)^n
+ * (Richardson & Zaki 1954; 4.8 measured in the case `settling`). */
 static const double packing = 0.8, hindrance = 4.65;
 
-/* Overlap under load above which to warn, as a part of the radius: in a pile, and of discs that lie alone. */
-static const double most_in_pile = 0.02, most_alone = 0.05, wanted_overlap = 0.01;
+/* Overlap under load over the radius, above which to warn: in a pile, and of single discs on the ground. */
+static const double max_in_pile = 0.02, max_alone = 0.05, wanted_overlap = 0.01;
 
 /* The discs that gravity draws to one side. */
 struct sediment {
@@ -21,8 +21,8 @@ struct sediment {
   bool at_high_end; /* of the axis */
   size_t count;
   double weight, area, radius; /* sums */
-  double farthest;             /* of the centres from that side */
-  double low[2], high[2];      /* corners of the rectangle that holds them at the start */
+  double farthest;             /* distance of a centre from that side */
+  double low[2], high[2];      /* bounding rectangle at the start */
 };
 
 static double buoyant_weight(const struct scene *scene, const struct disc_spec *disc, int axis)
@@ -57,7 +57,7 @@ static struct sediment gather(const struct scene *scene, int axis, bool at_high_
   return s;
 }
 
-/* Width over which the weight is spread: of the box or, for discs that stand densely from the start, their own. */
+/* Width that supports the weight: of the box or, for discs densely packed from the start, of the packing. */
 static double width_of(const struct scene *scene, const struct sediment *s)
 {
   const double dense = 0.6, held = (s->high[0] - s->low[0]) * (s->high[1] - s->low[1]);
@@ -70,7 +70,7 @@ static double layers(const struct scene *scene, const struct sediment *s)
   return s->area / packing / scene->domain.size[!s->axis] / (2 * s->radius / (double)s->count);
 }
 
-/* True if the farthest disc arrives within the run, with time for half as far to spare. */
+/* True if the farthest disc arrives within 2/3 of the run. */
 static bool comes_to_rest(const struct scene *scene, const struct sediment *s)
 {
   const double spare = 1.5, count = (double)s->count, fraction = s->area / (double)scene_cells(scene);
@@ -80,7 +80,7 @@ static bool comes_to_rest(const struct scene *scene, const struct sediment *s)
   return spare * way <= speed * (double)scene->run.steps;
 }
 
-/* Force at an overlap of two equal discs or, for one that lies alone, of a disc and a side. */
+/* Force at an overlap of two equal discs or, for a single disc, of a disc and a side. */
 static double force_at(const struct contact_law *law, double overlap, double radius, bool alone)
 {
   return contact_spring_at(law, (const double[2]){radius, alone ? INFINITY : radius}, overlap).force;
@@ -100,7 +100,7 @@ static double overlap_under(double load, const struct contact_law *law, double r
   return low;
 }
 
-/* In a pile a disc bears what lies on its width. */
+/* Load on the lowest disc: its own weight if alone, in a pile the weight above its width. */
 static double load_on(const struct scene *scene, const struct sediment *s, const struct disc_spec *disc, bool alone)
 {
   const double own = fabs(buoyant_weight(scene, disc, s->axis));
@@ -124,7 +124,7 @@ static void advise_overlap(const struct scene *scene, const struct sediment *s)
     stiffness = fmax(stiffness, load / force_at(&unit, wanted_overlap * radius, radius, alone));
     before = disc;
   }
-  if (worst <= (alone ? most_alone : most_in_pile)) return;
+  if (worst <= (alone ? max_alone : max_in_pile)) return;
   printf(
       "  note: at rest %s overlap by about %.2g %% of their radius under %s; better: contact.stiffness >= %.2g, which "
       "gives %g %%\n",

@@ -1,14 +1,14 @@
-/* Sound between two sides that both reflect rings at c_s/(2 H), H apart. Where that is near the frequency at which a disc in a
- * stream sheds vortices, it spoils lift and Strouhal number, without any other sign. Measured (R = 5, Re 100, U = 0.03, walls
- * that move with the stream; tone over shedding frequency, length over height of the box, Strouhal number, standard deviation
- * of the lift coefficient; published, without sides: 0.165 and 0.23):
+/* Sound between two sides that both reflect rings at c_s/(2 H), H apart. Near the shedding frequency of a disc in a
+ * stream this changes lift and Strouhal number, without any other sign. Measured (R = 5, Re 100, U = 0.03, walls
+ * that move with the stream; tone over shedding frequency, length over height of the box, Strouhal number, standard
+ * deviation of the lift coefficient; published, without sides: 0.165 and 0.23):
  *
  *     tone   2.9    2.9    2.9    1.46   1.46   1.46   0.73   3.9    4.5    5.9
  *     L/H    0.90   1.35   1.80   0.45   0.90   1.80   0.45   1.20   1.38   1.80
  *     St     0.473  0.167  0.166  0.162  0.169  0.165  0.130  0.160  0.163  0.170
  *     C_L    0.56   0.36   0.32   0.52   0.46   0.30   0.23   0.19   0.20   0.25
  *
- * So the warning is of boxes up to 1.5 times as long as high with a tone up to a factor of 3.5 from the shedding. */
+ * Hence the warning for L/H up to 1.5 and a tone within a factor of 3.5 of the shedding frequency. */
 #include "cli/advice.h"
 
 #include <math.h>
@@ -16,8 +16,8 @@
 
 static const double near_factor = 3.5, short_box = 1.5, least_reynolds = 47;
 
-/* Strouhal number of a cylinder's shedding: the fit of Williamson 1988 (Phys. Fluids 31, 2742) up to Re 180, and about 0.2
- * beyond. */
+/* Strouhal number of a cylinder's shedding: the fit of Williamson 1988 (Phys. Fluids 31, 2742) up to Re 180, and
+ * about 0.2 beyond. */
 static double strouhal(double reynolds)
 {
   return reynolds > 180 ? 0.2 : 0.1816 - 3.3265 / reynolds + 1.6e-4 * reynolds;
@@ -28,7 +28,7 @@ static bool reflects(const struct side *side)
   return side->type == SIDE_WALL || side->type == SIDE_INLET;
 }
 
-/* The two sides that an axis ends at. */
+/* The first of the two sides at the ends of an axis. */
 static const struct side *sides_of(const struct scene *scene, int axis)
 {
   return &scene->domain.side[axis == 0 ? SIDE_LEFT : SIDE_BOTTOM];

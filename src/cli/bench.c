@@ -105,7 +105,7 @@ static int run_benches(struct arguments *arguments)
 {
   struct status status;
   const char *path = arguments->json;
-  bool chosen[BENCHES_MOST] = {false};
+  bool chosen[BENCHES_MAX] = {false};
   FILE *json = NULL;
   if (!choose(arguments->operands, arguments->operand_count, chosen)) return DELBM_USAGE;
   if (path && !(json = fopen(path, "w"))) {

@@ -92,11 +92,11 @@ static void print_fluid(const struct scene *scene)
     printf("  note: tau above 1.5; walls and discs lose accuracy; better: ");
     advise_viscosity(scene, (1.5 - 0.5) / 3);
   }
-  if (tau < estimate_least_tau) {
+  if (tau < estimate_min_tau) {
     printf("  note: tau below %g, close to 1/2: hardly any damping of what goes wrong, and no collision operator is "
            "reliable above Mach 0.2 (bench/STABILITY.md); better: ",
-           estimate_least_tau);
-    advise_viscosity(scene, (estimate_least_tau - 0.5) / 3);
+           estimate_min_tau);
+    advise_viscosity(scene, (estimate_min_tau - 0.5) / 3);
   }
 }
 
@@ -106,14 +106,14 @@ static void advise_speed(const struct scene *scene, const struct estimate *faste
   const double advised = scene_advised_speed;
   if (fastest->speed <= advised) return;
   printf("  note: Mach above %.2g (%g cells/step); errors grow with its square; better: %s <= %.3g %s",
-         advised * sqrt(3), advised, fastest->key, fastest->most, fastest->unit);
+         advised * sqrt(3), advised, fastest->key, fastest->advised, fastest->unit);
   if (scene->units.dx > 0) {
     const double slower = advised / fastest->speed;
     struct unit unit;
     char si[UNIT_TEXT];
     unit_parse(fastest->unit, &scene->units, &unit);
     unit_si_text(&unit, si);
-    printf(" (%.3g %s), or units.dt <= %.3g s (units.viscosity <= %.3g)", in_si(scene, fastest->most, fastest->unit),
+    printf(" (%.3g %s), or units.dt <= %.3g s (units.viscosity <= %.3g)", in_si(scene, fastest->advised, fastest->unit),
            si, scene->units.dt * slower, scene->fluid.viscosity * slower);
   }
   printf("\n");
@@ -122,12 +122,12 @@ static void advise_speed(const struct scene *scene, const struct estimate *faste
 static void advise_cells(const struct scene *scene, double speed)
 {
   const double grid_reynolds = speed / scene->fluid.viscosity;
-  if (grid_reynolds <= estimate_most_grid_reynolds) return;
+  if (grid_reynolds <= estimate_max_grid_reynolds) return;
   printf("  note: grid Reynolds number (of one cell) %.3g, above %g: cells too coarse for the flow, which may become "
          "unstable; better: fluid.viscosity >= %.3g",
-         grid_reynolds, estimate_most_grid_reynolds, speed / estimate_most_grid_reynolds);
+         grid_reynolds, estimate_max_grid_reynolds, speed / estimate_max_grid_reynolds);
   if (scene->units.dx > 0)
-    printf(", by units.dx <= %.3g m", scene->units.dx * estimate_most_grid_reynolds / grid_reynolds);
+    printf(", by units.dx <= %.3g m", scene->units.dx * estimate_max_grid_reynolds / grid_reynolds);
   printf("\n");
 }
 

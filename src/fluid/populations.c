@@ -15,8 +15,8 @@ static size_t round_up(size_t n, size_t to)
   return (n + to - 1) / to * to;
 }
 
-/* A line before each row, the row, its ghost and whatever fills the last line; never a multiple of 4 KiB, which would
- * put a cell and its upper neighbour in one cache set. */
+/* A cache line before each row, the row, its ghost, padding to a whole line. Never a multiple of 4 KiB, which would
+ * map a cell and its upper neighbour to one cache set. */
 static size_t row_pitch(int nx, enum precision precision)
 {
   size_t line = populations_line(precision);

@@ -4,12 +4,12 @@
  *
  *   parity 0   plane i at x holds f_i(x), already streamed. The step reads f_i from plane i at x and leaves the
  *              collided f_i* in plane opposite(i) at x: it touches only its own cell.
- *   parity 1   f_i(x) therefore waits in plane opposite(i) at x - e_i. The step reads it there and writes f_i* to plane
- *              i at x + e_i, where parity 0 looks for it.
+ *   parity 1   f_i(x) is therefore in plane opposite(i) at x - e_i. The step reads it there and writes f_i* to plane
+ *              i at x + e_i, from where parity 0 reads it.
  *
- * With a_i the address from which cell x reads f_i, both kinds write f_i* to a_opposite(i): one kernel serves them,
- * given nine addresses. The nine slots of a cell belong to it alone in either parity, so cells may be updated in any
- * order and by any thread without a race.
+ * With a_i the address from which cell x reads f_i, both kinds write f_i* to a_opposite(i): one kernel takes the
+ * nine addresses of either parity. In either parity no two cells access the same slot, so cells may be updated in
+ * any order and by any thread without a race.
  *
  * A plane is ny + 2 rows of `pitch` values: a ring of ghost cells surrounds the box, x = 0 starts on a cache line, and
  * planes are skewed so that nine of them never compete for one cache set. Where y is periodic the row below the first
@@ -38,11 +38,11 @@ struct populations {
 bool populations_create(struct populations *populations, int nx, int ny, bool periodic_y, enum precision precision,
                         struct status *status);
 
-/* Fluid at rest again, before the first step. First touch is by rows, as the threads of the sweep share them. */
+/* Sets the fluid to rest, before the first step. First touch by rows, in the threads' partition of the sweep. */
 void populations_rest(struct populations *populations);
 void populations_destroy(struct populations *populations);
 
-/* Saves or restores the populations and their parity. Ghosts are left out: boundary_refill makes them again. */
+/* Saves or restores the populations and their parity, without ghosts (boundary_refill). */
 bool populations_store(struct populations *populations, struct store *store, struct status *status);
 
 /* Values in a cache line, which is also the room before x = 0 in each row. */
@@ -65,19 +65,19 @@ static inline size_t populations_source(const struct populations *p, int i, int 
   return populations_slot(p, d2q9_opposite[i], x - d2q9_ex[i], y - d2q9_ey[i]);
 }
 
-/* Row y of the box, or the row that a periodic side takes y to. */
+/* Row y of the box, wrapped at a periodic side. */
 static inline int populations_row(const struct populations *p, int y)
 {
   return !p->periodic_y ? y : y < 0 ? y + p->ny : y >= p->ny ? y - p->ny : y;
 }
 
-/* Where cell (x, y) has put population i in the step just taken, of parity p->parity. */
+/* Position at which cell (x, y) wrote population i in the last step, of parity p->parity. */
 static inline size_t populations_sent(const struct populations *p, int i, int x, int y)
 {
   return populations_source(p, d2q9_opposite[i], x, y);
 }
 
-/* Where cell (x, y) will read population i in the step after the one just taken. */
+/* Position from which cell (x, y) will read population i in the step after the last step, of parity p->parity. */
 static inline size_t populations_received(const struct populations *p, int i, int x, int y)
 {
   if (p->parity == 1) return populations_slot(p, i, x, y);
@@ -97,7 +97,7 @@ static inline void populations_set(struct populations *p, size_t slot, double va
     ((float *)p->block)[slot] = (float)value;
 }
 
-/* Addresses a[i] from which cell (x, y), and those to its right after it, read f_i in the coming step. */
+/* Addresses a[i] from which cell (x, y), and then the cells to its right, read f_i in the coming step. */
 void populations_cells(const struct populations *populations, int x, int y, void *a[Q]);
 
 /* Deviations of cell (x, y) that the coming step will collide. */

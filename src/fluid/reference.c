@@ -30,22 +30,21 @@ void reference_destroy(struct reference *r)
   *r = (struct reference){0};
 }
 
-/* The rate of even moments under a drag k = B/(1 - B): of owen for the mean of a moment before and after collision, whose
- * change is -mean/(Lambda + k/2) (see sweep_kernel.c). */
+/* Rate of even moments in the midpoint form: the change is -mean/(Lambda + k/2), k = B/(1 - B) (sweep_kernel.c). */
 static double midpoint_even(double s_nu, double b)
 {
   const double lambda = 1 / s_nu - 0.5;
   return b < 1 ? 1 / (lambda + b / (1 - b) / 2 + 0.5) : 0;
 }
 
-/* What q gains, from dq = -(mean q + mean j)/Lambda - 2 k mean q, with dj = -2 B j. */
+/* Change of q in the midpoint form: dq = -(mean q + mean j)/Lambda - 2 k mean q, with dj = -2 B j. */
 static double midpoint_odd(double s_q, double b, double q, double j)
 {
   const double lambda = 1 / s_q - 0.5, k = b / (1 - b);
   return b < 1 ? -((q + j - b * j) / lambda + 2 * k * q) / (1 + 1 / (2 * lambda) + k) : -2 * q;
 }
 
-/* The rate of qx and qy at a velocity. */
+/* s_q at a velocity (adaptive rates, sweep_kernel.c). */
 static double rate_of_q(const struct rates *rates, double rho, double ux, double uy)
 {
   const double viscosity = (1 / rates->s_nu - 0.5) / 3;
@@ -54,7 +53,7 @@ static double rate_of_q(const struct rates *rates, double rho, double ux, double
   return (rates->s_q + rates->s_q_fast * fast) / (1 + fast);
 }
 
-/* One cell: (1), (12), (17), with the force of Guo, Zheng & Shi (2002). `b`, `bv`: cover of the cell. */
+/* One cell: (1), (12), (17) of the paper, with the force of Guo, Zheng & Shi (2002). b = B, bv = B v. */
 static void collide(const double f[Q], const struct sweep_constants *c, enum coupling_form form, double b,
                     const double bv[2], double collided[Q])
 {
@@ -76,13 +75,13 @@ static void collide(const double f[Q], const struct sweep_constants *c, enum cou
     after[k] = m[k] + rate[k] * (target[k] - m[k]);
     force_high[k] = (1 - rate[k] / 2) * (force_high[k] - force_low[k]);
   }
-  /* the odd part in two: collision alone, which the unified form reflects, and then the force, whose halves about the
-   * collision leave -F in q whatever the rate */
+  /* odd moments in two parts: the collision, which the unified form reflects; then the force, which adds -F to q at
+   * any rate */
   after[M_JX] = m[M_JX];
   after[M_JY] = m[M_JY];
   after[M_QX] = m[M_QX] - q * (m[M_QX] + m[M_JX]);
   after[M_QY] = m[M_QY] - q * (m[M_QY] + m[M_JY]);
-  if (form == FORM_MIDPOINT) { /* all that q gains, less what the reflection below adds */
+  if (form == FORM_MIDPOINT) { /* the change of q, less the part that the reflection below adds */
     after[M_QX] = m[M_QX] + midpoint_odd(s_q, b, m[M_QX], m[M_JX]) + 2 * b * m[M_QX];
     after[M_QY] = m[M_QY] + midpoint_odd(s_q, b, m[M_QY], m[M_JY]) + 2 * b * m[M_QY];
   }
@@ -94,7 +93,7 @@ static void collide(const double f[Q], const struct sweep_constants *c, enum cou
   const double *from = form == FORM_UNIFIED ? unforced : f;
   for (int i = 0; i < Q; i++) {
     const double ev = d2q9_ex[i] * bv[0] + d2q9_ey[i] * bv[1];
-    const double pushed = 3 * d2q9_weight[i] * (d2q9_ex[i] * Fx + d2q9_ey[i] * Fy); /* by the force, odd part */
+    const double pushed = 3 * d2q9_weight[i] * (d2q9_ex[i] * Fx + d2q9_ey[i] * Fy); /* odd part of the force */
     reflected[i] = b * (from[d2q9_opposite[i]] - from[i] - 2 * pushed) + 6 * d2q9_weight[i] * rho * ev;
     collided[i] = unforced[i] + reflected[i] + force[i];
   }
@@ -111,7 +110,7 @@ static int wrap_or_clamp(int s, int n, bool periodic)
   return (s < 0) == periodic ? n - 1 : 0;
 }
 
-/* Population i of cell (x, y) after streaming from (sx, sy): inside, beyond one side, or beyond two. */
+/* Population i of cell (x, y) after streaming from (sx, sy), which lies inside, beyond one side, or beyond two. */
 static double streamed(const struct reference *r, const struct side side[SIDE_COUNT], int x, int y, int i)
 {
   const int sx = x - d2q9_ex[i], sy = y - d2q9_ey[i];
@@ -155,7 +154,7 @@ static double density_of(const double *f)
   return sum;
 }
 
-/* The step of an outlet's ghost cell (boundary.h) beside a cell, with (ex, ey) the direction into the box. */
+/* Advances an outlet's ghost cell (boundary.h) beside a cell; (ex, ey) is the direction into the box. */
 static void update_ghost(struct reference *r, enum side_name name, size_t cell, int ex, int ey)
 {
   const double hold = boundary_outlet_hold(r->nx, r->ny), *f = r->collided + cell * Q;

@@ -1,5 +1,5 @@
-/* The step written as the paper writes it, cell by cell and slowly: two arrays of whole populations, the moment matrix,
- * the source cell of every population looked up. Every fast kernel is held against it. */
+/* The step as the paper states it, cell by cell: two arrays of full populations, the moment matrix, a search for the
+ * source cell of every population. Slow; the reference of every fast kernel in tests and benchmarks. */
 #ifndef DELBM_FLUID_REFERENCE_H
 #define DELBM_FLUID_REFERENCE_H
 
@@ -17,7 +17,7 @@ struct reference {
   bool stepped;
 };
 
-/* Per cell B and B v, as solid_row but for the whole box; NULL arrays for fluid alone. */
+/* Per cell B and B v, over the whole box; NULL arrays for fluid alone. */
 struct reference_cover {
   enum coupling_form form;
   const double *b, *bvx, *bvy;

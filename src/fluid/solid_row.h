@@ -1,5 +1,5 @@
-/* Memory for a solid row (sweep.h): the weight B and the velocity of the solid in one row of cells, filled just before the row
- * is swept. Three row buffers that stay in cache take the place of three planes of the box. */
+/* Memory for a solid row (sweep.h). A row is filled just before its sweep, so that three row buffers in cache
+ * replace three planes of the box. */
 #ifndef DELBM_FLUID_SOLID_ROW_H
 #define DELBM_FLUID_SOLID_ROW_H
 

@@ -41,7 +41,7 @@ const struct sweep_kernel *sweep_kernel_at(size_t index, bool *runs_here)
 
 static bool name_matches(const char *name, const struct sweep_kernel *kernel)
 {
-  size_t length = strlen(name); /* `avx2` stands for avx2-double or avx2-single, by the case's precision */
+  size_t length = strlen(name); /* a name may lack the precision: "avx2" is avx2-double or avx2-single */
   return strncmp(kernel->name, name, length) == 0 && (kernel->name[length] == '\0' || kernel->name[length] == '-');
 }
 

@@ -10,45 +10,45 @@
 #include "fluid/populations.h"
 #include "fluid/runs.h"
 
-/* What is the same for every cell of a step. */
+/* Constants of a step, the same for every cell. */
 struct sweep_constants {
   struct rates rates;
   double force[2];   /* body force per unit mass */
-  double uniform[2]; /* and per unit volume (zero_flux) */
+  double uniform[2]; /* force per unit volume (zero_flux) */
 };
 
-/* The solid in the cells of a row, in the precision of the populations: b[x] = B (weight.h), and B times the velocity of the
- * solid, the sum over owners of w_p B v_p. Zero where no disc is. */
+/* The solid in the cells of a row, in the precision of the populations: b[x] = B (weight.h), and B times the
+ * velocity of the solid, the sum over owners of w_p B v_p. Zero where no disc is. */
 struct solid_row {
   void *b, *bvx, *bvy;
 };
 
 /* Updates n cells whose populations are read from a[i][0..n-1]. `solid` is NULL for fluid alone. With a force, sum[]
- * takes the momentum of the cells, the mean of before and after the collision and half of the force more: in fluid alone that is
- * what they have afterwards, and inside discs that of the disc; without a force it is left alone. */
+ * is set to the momentum of the cells: the mean of before and after the collision plus F/2, which is the momentum
+ * after the collision in fluid alone and rho v inside discs. Without a force sum[] is unchanged. */
 typedef void sweep_row(void *const a[Q], int n, const struct sweep_constants *constants, const struct solid_row *solid,
                        double sum[2]);
 
 /* The same for fluid alone without force, from one set of addresses to another. */
 typedef void sweep_row_between(void *const from[Q], void *const to[Q], int n, const struct sweep_constants *constants);
 
-/* The sums of each of `count` runs of a row, whose populations are read from a[i][x]; share[] are those of all runs. Up to
- * seven elements past the end of the populations and of share[] are read. */
+/* The sums of each of `count` runs of a row, with populations read from a[i][x]; share[] has w_p B of the cells of
+ * all runs. Up to seven elements past the end of the populations and of share[] are read. */
 typedef void gather_row(void *const a[Q], const struct run *runs, size_t count, const double *share,
                         struct moment_sums *sums);
 
-/* Fills the solid row of nx cells with `count` runs, from left to right, of discs that move at surface[disc]; up to seven
- * elements past its end are written. */
+/* Fills the solid row of nx cells with `count` runs, from left to right, of discs that move at surface[disc]; up to
+ * seven elements past its end are written. */
 typedef void paint_row(const struct solid_row *row, int nx, const struct run *runs, size_t count, const double *share,
                        const struct surface_velocity *surface);
 
-/* True if the rates depend on how fast the fluid is. */
+/* True if the rates depend on the fluid's speed. */
 static inline bool rates_are_adaptive(const struct rates *rates)
 {
   return rates->s_q_fast > 0;
 }
 
-/* Largest |j/rho|^2 of n cells; NAN if one is not finite or has no positive density. */
+/* Largest |j/rho|^2 of n cells; NAN if a cell has a value that is not finite or a density that is not positive. */
 typedef double scan_row(void *const a[Q], int n);
 
 struct sweep_kernel {
@@ -62,10 +62,10 @@ struct sweep_kernel {
   scan_row *scan;
 };
 
-/* The compiled-in kernels, best first, and whether this machine runs it; NULL past the last. */
+/* The compiled-in kernels, best first; *runs_here: this machine supports it. NULL past the last. */
 const struct sweep_kernel *sweep_kernel_at(size_t index, bool *runs_here);
 
-/* The kernel of that name, or with NULL the best that this machine runs, of the wanted precision. */
+/* The kernel of that name or, for NULL, the best that this machine supports, in this precision. */
 const struct sweep_kernel *sweep_find(const char *name, enum precision precision, struct status *status);
 
 #endif

@@ -1,16 +1,16 @@
 /* The collide-stream kernel: one body, compiled once per precision (REAL) and instruction set (VARIANT).
  *
- * The paper's nine moments reduce, in a lattice of four opposite pairs, to sums and differences of those pairs:
+ * The paper's nine moments reduce, in a lattice of four opposite pairs, to sums and differences of the pairs:
  *
  *   s1 = f1+f3   s2 = f2+f4   s5 = f5+f7   s6 = f6+f8        even: rho, e, eps, pxx, pxy
  *   d1 = f1-f3   d2 = f2-f4   d5 = f5-f7   d6 = f6-f8        odd:  jx, qx, jy, qy
  *
  *   S = s1+s2, D = s5+s6, pxx = s1-s2, pxy = s5-s6, tx = d5-d6 = (2 jx + qx)/3, ty = d5+d6 = (2 jy + qy)/3.
  *
- * e and eps relax at one rate, so any combination of them does: S to 4 rho/9 + u.j/3 and D to rho/9 + u.j/3. tx relaxes
- * to jx/3 at the rate of qx. What is added to the populations is built from a quarter of the changes of S, D, pxx, pxy,
- * tx, ty and half of those of jx, jy, so that what is left at the end is additions; f0 takes what S and D give up, so
- * that mass is kept to round-off.
+ * e and eps relax at one rate, and so does any combination: S to 4 rho/9 + u.j/3 and D to rho/9 + u.j/3. tx relaxes
+ * to jx/3 at the rate of qx. The increments of the populations are sums of a quarter of the changes of S, D, pxx,
+ * pxy, tx, ty and half of the changes of jx, jy. f0 changes by minus the changes of S and D, which conserves mass to
+ * round-off.
  *
  * Force: second order in time (Guo, Zheng & Shi 2002) with F = rho g + uniform; even equilibria see j + F/2, and odd
  * moments, where the two half forces cancel, gain F and F/3.
@@ -19,24 +19,25 @@
  * to t.
  *   owen    (12)-(13): rates times (1 - B), reflection of the moments before collision;
  *   unified (17)-(18): full rates, reflection of the moments after collision;
- *   midpoint: owen for the means of a moment before and after collision, so that viscosity is a matter of scale.
- * Either way j gains exactly 2 h, h = rho B v - B (j + F): what is reflected has felt the force, so that fluid inside a
- * disc keeps the disc's velocity exactly, (j + F/2)/rho = v. And t gains 2 h/3 and, of the difference j/3 - t, the part
- * s_q (1 - B) + 2 B (owen) or s_q (1 - 2 B) + 2 B (unified).
+ *   midpoint: owen for the mean of a moment before and after collision: slow flow is the same at every viscosity.
+ * In each form j changes by exactly 2 h, h = rho B v - B (j + F): the momentum that is reflected includes the force,
+ * so that fluid inside a disc keeps the disc's velocity exactly, (j + F/2)/rho = v. t changes by 2 h/3 and by the
+ * product of (j/3 - t) and s_q (1 - B) + 2 B (owen) or s_q (1 - 2 B) + 2 B (unified).
  *
- * Why midpoint: streaming links the means m' = m + dm/2 of odd moments with the changes dm of even ones, and means of
- * even ones with changes of odd ones. A steady slow flow is thus the same for every viscosity if, with Lambda =
- * 1/s - 1/2, means of even and changes of odd moments are in proportion to Lambda_nu, which without solid they are at
- * fixed Lambda_nu Lambda_q (d'Humieres & Ginzburg 2009). Owen's form, with k = B/(1 - B), is
+ * Why midpoint: streaming couples the means m' = m + dm/2 of odd moments to the changes dm of even moments, and
+ * means of even moments to changes of odd moments. A steady slow flow is therefore the same for every viscosity if,
+ * with Lambda = 1/s - 1/2, means of even and changes of odd moments are proportional to Lambda_nu. Without solid
+ * this is the case at fixed Lambda_nu Lambda_q (d'Humieres & Ginzburg 2009). Owen's form, with k = B/(1 - B), is
  *   dp = -p'/(Lambda_nu (1 + k) + k/2),   dj = -2 k j',   dq = -(1 + k) (q' + j')/Lambda_q - 2 k q',
- * which is so once k is in proportion to Lambda_nu (weight.h) and 1 + k, what is left of it as viscosity vanishes, is 1.
- * Solved for the change that is
+ * which has this property if k is proportional to Lambda_nu (weight.h) and 1 + k is replaced by 1, its limit for
+ * vanishing viscosity. Solved for the change:
  *   even moments:  rate (1 - B) s/(1 - B (1 - s_nu/2)),
  *   t:             of j/3 - t the part (s_q (1 - 2 B) + 2 B)/(1 - B s_q/2).
  *
- * Adaptive rates: s_q = (slow + fast a)/(1 + a), a = rho |u|^2/viscosity^2, the cell's Reynolds number squared. A small s_q
- * makes slow flow accurate to third order, and fast flow unstable. Smooth, also since a minimum would be a branch where
- * cells are not taken in vectors, and its sums then round otherwise. */
+ * Adaptive rates: s_q = (slow + fast a)/(1 + a), a = rho |u|^2/viscosity^2, the cell's Reynolds number squared. A
+ * small s_q makes slow flow accurate to third order, and fast flow unstable. A smooth blend, not min(): min()
+ * becomes a branch in the scalar remainder loop, and its results would differ from the vector loop's in the last
+ * bit. */
 #include "fluid/sweep.h"
 
 #define PASTE3(a, b, c) a##_##b##_##c
@@ -150,7 +151,7 @@ static inline __attribute__((always_inline)) void collide_stream(void *const a[Q
   }
 }
 
-/* In place f_i* goes to the slot that f_opposite(i) was read from. */
+/* In place: f_i* is written to the slot from which f_opposite(i) was read. */
 #define ROW(name, form, adaptive, force)                                                                               \
   static void name(void *const a[Q], int n, const struct sweep_constants *constants, const struct solid_row *solid,    \
                    double sum[2])                                                                                      \
@@ -175,7 +176,7 @@ ROW(sweep_discs_midpoint_force, FORM_MIDPOINT, false, true)
 ROW(sweep_discs_midpoint_adaptive, FORM_MIDPOINT, true, false)
 ROW(sweep_discs_midpoint_adaptive_force, FORM_MIDPOINT, true, true)
 
-/* The classic kernels, from one array to another: what the in-place ones are measured against. */
+/* The classic kernels, from one array to another: reference of the benchmark `sweep`. */
 static void sweep_two_arrays(void *const from[Q], void *const to[Q], int n, const struct sweep_constants *constants)
 {
   collide_stream(from, to, n, constants, NULL, NULL, FLUID_ALONE, false, false);

@@ -4,7 +4,7 @@
 
 #include <stdbool.h>
 
-/* The two places, of `count` along an axis, between which the slope at one is taken, and how far apart they are. */
+/* The two indices, of `count` along an axis, for the difference quotient at an index, and their distance. */
 struct stencil {
   int low, high, distance;
 };

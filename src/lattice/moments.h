@@ -1,4 +1,4 @@
-/* The paper's moments (2) and their equilibria (4), written out: the reference that the fast kernel is held against. */
+/* The paper's moments (2) and their equilibria (4), written out: the reference for tests of the fast kernel. */
 #ifndef DELBM_LATTICE_MOMENTS_H
 #define DELBM_LATTICE_MOMENTS_H
 

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A name and what it stands for. */
+/* A named unit: its value in SI base units and its powers of length, time and mass. */
 struct named {
   const char *name;
   long double scale;

@@ -1,15 +1,15 @@
 /* Units: texts such as "cm^2/s" or "cells/step" as a scale and powers of length, time and mass.
  *
- * A case's own units, cell, step and the density of the fluid at rest, stand in one list with metre and second, so that a
- * conversion is one division, whichever way it goes. Its result is rounded to 15 digits: then 0.2 cm are 20 cells of
- * 0.1 mm, not 20.000000000000004, and a case in physical units has the bits of one in lattice units. */
+ * Cell, step and the density of the fluid at rest are units beside metre and second, so that a conversion is one
+ * division in either direction. The result is rounded to 15 digits: 0.2 cm are 20 cells of 0.1 mm, not
+ * 20.000000000000004, and a case in physical units has the same bits as in lattice units. */
 #ifndef DELBM_LATTICE_UNITS_H
 #define DELBM_LATTICE_UNITS_H
 
 #include <stdbool.h>
 #include <stddef.h>
 
-/* What the lattice stands for, in SI. All zero: nothing; a density of 0 is not known. */
+/* The lattice in SI units. All zero: unknown. A density of 0: unknown. */
 struct units {
   double dx;      /* length of a cell, m */
   double dt;      /* duration of a step, s */
@@ -17,12 +17,12 @@ struct units {
 };
 
 struct unit {
-  long double scale; /* in SI; 0 where it needs what `units` does not tell */
+  long double scale; /* in SI; 0 where it depends on a number that `units` lacks */
   int length, time, mass;
   bool lattice; /* made of cells, steps and the fluid's density */
 };
 
-/* Reads names joined by * and /, each with a whole power: "kg*m/s^2". False for what is no unit; "" is the number 1. */
+/* Reads names joined by * and /, each with a whole power: "kg*m/s^2". False for an unknown unit; "" is the number 1. */
 bool unit_parse(const char *text, const struct units *units, struct unit *unit);
 
 /* The names of physical units, one by one; NULL past the last. */

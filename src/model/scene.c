@@ -47,7 +47,7 @@ bool scene_fill(struct scene *scene, struct status *status)
   if (!memory_grow(&scene->particles.discs, &capacity, listed + added, sizeof *scene->particles.discs, "the discs",
                    status))
     return false;
-  /* not gsl_rng_alloc: without memory it aborts, unless the error handler of the whole process is another */
+  /* not gsl_rng_alloc, which aborts for want of memory under GSL's default error handler */
   gsl_rng random = {.type = gsl_rng_mt19937,
                     .state = memory_allocate(1, gsl_rng_mt19937->size, "random numbers", status)};
   if (!random.state) return false;

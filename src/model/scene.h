@@ -1,5 +1,5 @@
-/* What is simulated: the case in memory, as read, with every default filled in. Lattice units (dx = dt = 1, reference
- * density 1). Nothing here depends on how a case is written down (src/case) or run (sim). */
+/* The scene: the case in memory, with every default filled in. Lattice units (dx = dt = 1, reference density 1).
+ * Nothing here depends on the format of a case (src/case) or on its execution (src/sim). */
 #ifndef DELBM_MODEL_SCENE_H
 #define DELBM_MODEL_SCENE_H
 
@@ -9,10 +9,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* The fastest that a disc's rim or a fluid may be set to move, for the Mach number's sake; cells/step. */
-static const double scene_most_speed = 0.3;
+/* Upper bound of prescribed speeds of fluid and of a disc's rim, Mach 0.52; cells/step. */
+static const double scene_max_speed = 0.3;
 
-/* The most that is advised, Mach 0.17: errors of compressibility grow with the square of the Mach number. cells/step. */
+/* Advised upper bound, Mach 0.17: errors of compressibility grow with the square of the Mach number. cells/step. */
 static const double scene_advised_speed = 0.1;
 
 enum side_name { SIDE_LEFT, SIDE_RIGHT, SIDE_BOTTOM, SIDE_TOP, SIDE_COUNT };
@@ -27,13 +27,12 @@ enum contact_damping { DAMPING_CRITICAL, DAMPING_PRINTED };
 enum frame_quantity { FRAME_SPEED, FRAME_VORTICITY };
 enum frame_discs { FRAME_DISCS_PLAIN, FRAME_DISCS_HEIGHT, FRAME_DISCS_SPEED, FRAME_DISCS_RADIUS };
 
-/* One side of the box. `velocity` is that of a wall or of the fluid at an inlet. */
+/* One side of the box. `velocity` is the velocity of a wall along itself, or of the fluid at an inlet. */
 struct side {
   enum side_type type;
   double velocity[2];
 };
 
-/* How a disc moves. */
 enum disc_motion {
   DISC_FREE,  /* by the forces on it */
   DISC_FIXED, /* stays in place; may spin at a prescribed rate */
@@ -50,7 +49,7 @@ struct disc_spec {
   enum disc_motion motion;
 };
 
-/* Discs on a square grid of the given spacing, each displaced by up to `jitter` cells in x and in y. */
+/* Discs on a square grid, each displaced by up to `jitter` cells in x and in y. */
 struct fill_spec {
   bool present;
   double spacing;
@@ -61,20 +60,20 @@ struct fill_spec {
   uint64_t seed;
 };
 
-/* The rates of the one collision kernel (of the paper's (3): s_e = s_eps, s_q, s_nu). */
+/* Relaxation rates of the collision, (3) of the paper with s_e = s_eps. */
 struct rates {
   double s_nu; /* of pxx and pxy: 1/(3 viscosity + 1/2) */
   double s_e;  /* of e and eps */
-  double s_q;  /* of qx and qy where fluid rests, or everywhere */
+  double s_q;  /* of qx and qy where fluid is at rest, or everywhere */
   double
-      s_q_fast; /* where its speed is far above viscosity/cell, with the mean of both at that speed; 0: s_q everywhere */
+      s_q_fast; /* of qx and qy far above the speed viscosity/cell, the mean of both at that speed; 0: s_q everywhere */
 };
 
 struct scene {
   char *title;
   char *name; /* of the case: the folder's or the file's, for the default output directory */
 
-  struct units units; /* what the lattice stands for; dx = 0: not given */
+  struct units units; /* the lattice in SI; dx = 0: unknown */
 
   struct {
     int size[2];
@@ -100,8 +99,8 @@ struct scene {
   struct {
     double gravity[2];
     struct fill_spec fill;
-    size_t count;            /* the listed discs, then those of `fill` */
-    size_t listed;           /* of which listed one by one */
+    size_t count;            /* the listed discs, then the discs of `fill` */
+    size_t listed;           /* discs listed one by one */
     struct disc_spec *discs; /* [count] */
   } particles;
 
@@ -114,7 +113,7 @@ struct scene {
     double damping;
     enum contact_damping damping_form;
     int substeps;             /* fixed number of sub-steps a step, 0: chosen from the stiffness */
-    double steps_per_contact; /* what that choice aims for */
+    double steps_per_contact; /* target of that choice */
   } contact;
 
   struct {
@@ -145,10 +144,10 @@ struct scene {
   } output;
 };
 
-/* Releases what the scene holds (not the struct itself). */
+/* Frees the members, not the struct itself. */
 void scene_clear(struct scene *scene);
 
-/* Mean radius of the discs, of which there is one at least. */
+/* Mean radius of the discs; at least one. */
 double scene_mean_radius(const struct scene *scene);
 
 /* Appends the discs of particles.fill to the listed ones, drawing the displacements from GSL's generator mt19937 with

@@ -13,8 +13,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* The longest "%.17g" is -2.2250738585072014e-308 (24 characters), the longest integer has 20; each is followed by a
- * separator. */
+/* With a separator: the longest "%.17g" is -2.2250738585072014e-308 (24 characters), the longest integer has 20. */
 enum { NUMBER_LENGTH = 25, INTEGER_LENGTH = 21 };
 
 struct column {
@@ -40,7 +39,7 @@ static const struct column columns[] = {
 
 enum {
   COLUMN_COUNT = sizeof columns / sizeof columns[0],
-  /* with the SI columns and time; final zero of snprintf */
+  /* with SI columns, time and the final zero of snprintf */
   ROW_LENGTH = 2 * INTEGER_LENGTH + (2 * COLUMN_COUNT + 1) * NUMBER_LENGTH + 1
 };
 
@@ -48,8 +47,8 @@ struct csv {
   int descriptor;
   char *path;
   off_t size;    /* of the file */
-  char *text;    /* the snapshot being put together */
-  size_t length; /* of it */
+  char *text;    /* the snapshot being formatted */
+  size_t length; /* of the text */
   size_t capacity;
   double second;              /* of a step; 0: no SI columns */
   double scale[COLUMN_COUNT]; /* of each column in SI; 0: left out */
@@ -62,7 +61,7 @@ static double column_value(const struct column *column, const struct discs *disc
   return values[disc];
 }
 
-/* Writes the text and empties it. When that fails, what arrived of it is cut off again: a snapshot is whole or
+/* Writes the text and empties it. On failure the file is truncated to its old length: a snapshot is complete or
  * absent. */
 static bool write_text(struct csv *csv, struct status *status)
 {
@@ -88,7 +87,7 @@ static bool reserve_row(struct csv *csv, struct status *status)
   return memory_grow(&csv->text, &csv->capacity, csv->length + ROW_LENGTH, 1, "a snapshot of the discs", status);
 }
 
-/* What each column is in SI. */
+/* Sets the factors from lattice to SI units. */
 static void set_scales(struct csv *csv, const struct units *units)
 {
   csv->second = units->dt;
@@ -124,7 +123,7 @@ static bool write_header(struct csv *csv, struct status *status)
   return write_text(csv, status);
 }
 
-/* Opens the file anew, or with what is in it. */
+/* Opens the file, with its content or, if `anew`, empty. */
 static bool open_file(struct csv **csv, const char *path, const struct units *units, bool anew, struct status *status)
 {
   *csv = memory_allocate(1, sizeof **csv, "the table of discs", status);
@@ -153,7 +152,7 @@ bool csv_open(struct csv **csv, const char *path, const struct units *units, str
   return close_unless(open_file(csv, path, units, true, status) && write_header(*csv, status), csv);
 }
 
-/* Cuts the file to a length that it must have. */
+/* Truncates the file; fails if it is shorter than `length`. */
 static bool cut_back(struct csv *csv, int64_t length, struct status *status)
 {
   if (!file_reaches(csv->descriptor, csv->path, length, status)) return false;
@@ -172,7 +171,7 @@ bool csv_sync(struct csv *csv, int64_t *length, struct status *status)
   return file_sync(csv->descriptor, csv->path, status);
 }
 
-/* Most discs touch nothing, so that a plain 0 is by far the most frequent number. */
+/* Fast path for 0, by far the most frequent number: most discs have no contact. */
 static size_t format_number(char *text, double value)
 {
   if (value == 0 && !signbit(value)) {

@@ -3,7 +3,7 @@
 
 #include <stdio.h>
 
-/* Writes a JSON string. A byte that is not UTF-8 (a path may hold any) becomes the replacement character. */
+/* Writes a JSON string. A byte that is not UTF-8 (possible in a path) becomes the replacement character. */
 void json_text(const char *text, FILE *stream);
 
 #endif

@@ -1,7 +1,6 @@
-/* A picture is made in three layers: the raster (the quantity, averaged over the cells of a pixel where the domain is
- * larger than the picture), the colours (the raster through a map, smoothly where a cell has many pixels), and the
- * discs. Lengths of the third are in pixels, with y upwards from the lower edge; the image stores its rows from the
- * top. */
+/* A picture has three layers: the raster (the quantity, averaged over the cells of a pixel if the domain is larger
+ * than the picture), the colours (the raster mapped to colours, interpolated if a cell has many pixels), and the
+ * discs. Lengths of discs are in pixels, y upwards from the lower edge; the image stores its rows from the top. */
 #include "output/picture.h"
 
 #include "base/memory.h"
@@ -44,9 +43,8 @@ struct image {
   uint8_t *pixels; /* row by row from the top */
 };
 
-/* Pixels on a domain of `size` cells: one a cell, unless the longer side would then have more than PICTURE_LARGEST
- * pixels, where pixels average squares of `block` cells, or fewer than PICTURE_SMALLEST, where a cell has `zoom` pixels
- * a side. */
+/* Pixels on a domain of `size` cells: one a cell. If the longer side has more than PICTURE_LARGEST cells, a pixel
+ * averages `block` x `block` cells; if fewer than PICTURE_SMALLEST, a cell is `zoom` x `zoom` pixels. */
 enum { PICTURE_LARGEST = 1600, PICTURE_SMALLEST = 400 };
 struct scale {
   int block;
@@ -109,7 +107,7 @@ static double clamp(double value, double low, double high)
   return value > low ? (value < high ? value : high) : low;
 }
 
-/* The raster between its points, linearly; its edge values go on outwards. */
+/* Linear interpolation of the raster, constant beyond its edge. */
 static double raster_at(const struct raster *raster, double x, double y)
 {
   x = clamp(x, 0, raster->width - 1);
@@ -127,7 +125,7 @@ static double channel(enum picture_colour colour, int which)
   return (double)((unsigned)colour >> (8 * (CHANNELS - 1 - which)) & 0xff);
 }
 
-/* The colour at 0 (low end of the scale) to 1 (high end). */
+/* The colour at `place`, from 0 (low end of the scale) to 1 (high end). */
 static void map_colour(const struct colour_map *map, double place, uint8_t *pixel)
 {
   double scaled = clamp(place, 0, 1) * (ANCHORS - 1);
@@ -169,13 +167,14 @@ static void blend(uint8_t *pixel, enum picture_colour colour, double share)
   for (int k = 0; k < CHANNELS; k++) pixel[k] = (uint8_t)(0.5 + (1 - share) * pixel[k] + share * channel(colour, k));
 }
 
-/* Share of a pixel inside an edge that lies `distance` pixels outwards of the pixel's centre. */
+/* Fraction of a pixel inside an edge `distance` pixels outwards of the pixel's centre. */
 static double coverage(double distance)
 {
   return clamp(distance + 0.5, 0, 1);
 }
 
-/* A disc on the picture, in pixels; cosine and sine of its angle; its colour, and whether that is plain. */
+/* A disc on the picture, in pixels; cosine and sine of its angle; its colour, and whether the colour is
+ * PICTURE_DISC. */
 struct drawn_disc {
   double x, y, radius;
   double cosine, sine;
@@ -183,7 +182,7 @@ struct drawn_disc {
   uint8_t inside[CHANNELS];
 };
 
-/* Share of the spin mark at (x, y) from the centre: two opposite quadrants, in small discs a line from centre to
+/* Opacity of the spin mark at (x, y) from the centre: two opposite quadrants, in small discs a line from centre to
  * rim. */
 static double mark_coverage(const struct drawn_disc *disc, double x, double y)
 {
@@ -226,7 +225,7 @@ static void draw_disc(struct image *image, const struct drawn_disc *disc)
       draw_disc_pixel(disc, column + 0.5 - disc->x, row + 0.5 - disc->y, image_pixel(image, column, row));
 }
 
-/* The disc n where it is, before periodic images. */
+/* Disc n at its own position, without periodic images. */
 static struct drawn_disc drawn_disc(const struct picture *picture, size_t n, double pixels, double values_end)
 {
   const struct discs *discs = picture->discs;
@@ -267,13 +266,13 @@ static void write_rows(png_structp png, png_infop info, const struct image *imag
   png_write_end(png, info);
 }
 
-/* What libpng hands back to on_error. */
+/* Argument of on_error, passed through libpng. */
 struct destination {
   const char *path;
   struct status *status;
 };
 
-/* Ends up in image_write, at its setjmp. */
+/* Returns to the setjmp in image_write. */
 static void on_error(png_structp png, png_const_charp message)
 {
   const struct destination *to = png_get_error_ptr(png);

@@ -1,10 +1,10 @@
-/* frames/NNNNNNNN.png: the flow as colour and the discs on top, y upwards. The same input gives the same bytes. */
+/* frames/NNNNNNNN.png: the flow as colour and the discs on top, y upwards. Equal input leads to equal bytes. */
 #ifndef DELBM_OUTPUT_PICTURE_H
 #define DELBM_OUTPUT_PICTURE_H
 
 #include "solid/discs.h"
 
-/* Colours of plain discs, as 0xRRGGBB. The dark quadrants show how far a disc has turned. */
+/* Colours of plain discs, as 0xRRGGBB. The dark quadrants show the disc's angle. */
 enum picture_colour { PICTURE_DISC = 0xf0f1f4, PICTURE_MARK = 0x868d9b, PICTURE_OUTLINE = 0x14161c };
 
 struct picture {
@@ -14,8 +14,8 @@ struct picture {
   const struct discs *discs;
   enum frame_quantity quantity;
   double maximum;       /* value at the end of the colour scale; 0: the largest of this picture */
-  const double *values; /* of each disc, which its colour shows, from blue to white; NULL: plain discs */
-  double values_end;    /* end of their scale, which starts at 0; 0: the end of the quantity's */
+  const double *values; /* of each disc, shown as its colour from blue to white; NULL: plain discs */
+  double values_end;    /* end of the discs' scale, which starts at 0; 0: the end of the quantity's scale */
 };
 
 /* Draws and writes one picture. A build without libpng refuses. */

@@ -11,7 +11,7 @@
 
 extern char **environ;
 
-/* Scripts run in the folder of the run. Rows of particles.csv come step by step, each with all discs in order. */
+/* Scripts run in the folder of the run. particles.csv has all discs of a step in order, step after step. */
 static const char trajectories[] =
     "# Paths of up to a dozen discs, and all of them at the last step.\n"
     "# In the folder of the run: gnuplot plots/trajectories.gp\n"
@@ -128,7 +128,7 @@ const char *plot_name(enum plot plot)
   return plots[plot].name;
 }
 
-/* A string of gnuplot's in single quotes, on one line. */
+/* Writes a gnuplot string in single quotes, on one line. */
 static void write_text(const char *text, FILE *stream)
 {
   fputc('\'', stream);

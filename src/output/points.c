@@ -35,7 +35,7 @@ static bool add(struct points *p, const struct discs *d, size_t i, const double 
   return true;
 }
 
-/* Those images of the discs, a whole box to the side, that reach into the box. */
+/* Adds the images of discs, shifted by whole boxes, that overlap the box. */
 static bool add_images(struct points *p, const struct scene *scene, const struct discs *d, const int shift[2],
                        struct status *status)
 {

@@ -1,4 +1,4 @@
-/* Discs as points: each of them, in order, and after them the images of those that reach across a periodic side. */
+/* Discs as points: all discs in order, then the images of discs that cross a periodic side. */
 #ifndef DELBM_OUTPUT_POINTS_H
 #define DELBM_OUTPUT_POINTS_H
 
@@ -11,7 +11,7 @@ struct points {
   double *radius, *angle, *spin;
 };
 
-/* Replaces the points, which are zero at first, by those of the discs. Fails only for want of memory. */
+/* Replaces the points (at first {0}) by the discs' points. Fails only for want of memory. */
 bool points_take(struct points *points, const struct scene *scene, const struct discs *discs, struct status *status);
 void points_clear(struct points *points);
 

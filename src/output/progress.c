@@ -51,7 +51,7 @@ static void format_figures(const struct progress *progress, int64_t step, double
            ended ? "taken" : "left");
 }
 
-/* Cells of the bar that fit on the terminal beside `used` characters; 0 when too few to be worth drawing. */
+/* Cells of the bar that fit on the terminal beside `used` characters; 0 if fewer than BAR_MIN. */
 static int bar_room(FILE *stream, size_t used)
 {
   struct winsize window = {0};

@@ -1,4 +1,4 @@
-/* How far a run is, on a stream for people: a bar redrawn in place on a terminal, and plain lines elsewhere. */
+/* Progress of a run on a stream: a bar redrawn in place on a terminal, plain lines elsewhere. */
 #ifndef DELBM_OUTPUT_PROGRESS_H
 #define DELBM_OUTPUT_PROGRESS_H
 
@@ -26,15 +26,15 @@ enum progress_style progress_style(FILE *stream);
 void progress_start(struct progress *progress, enum progress_style style, FILE *stream, int64_t first, int64_t steps,
                     double cells);
 
-/* Shows the step when it is time to: the bar at most ten times a second, a line every 10 s and at each quarter. */
+/* Shows the step if due: the bar at most ten times a second, a line every 10 s and at each quarter of the run. */
 void progress_update(struct progress *progress, int64_t step);
 
-/* Leaves the bar at its last state, so that other lines can follow. */
+/* Ends the bar's line in its last state. */
 void progress_finish(struct progress *progress, int64_t step);
 
 enum { PROGRESS_TIME = 32 };
 
-/* "1:05", "2:00:00" or "3d 04:05:06"; "-" for a time that is not known (not finite) or too long to tell. */
+/* "1:05", "2:00:00" or "3d 04:05:06"; "-" for a time that is not finite or too long. */
 void progress_time(char text[PROGRESS_TIME], double seconds);
 
 #endif

@@ -15,8 +15,8 @@ enum figure_kind { FIGURE_TEXT, FIGURE_INTEGER, FIGURE_REAL };
 struct figure {
   const char *name;
   enum figure_kind kind;
-  const char *group; /* of run.json that it belongs to; NULL: none */
-  bool json_only;    /* not in the line: may hold spaces */
+  const char *group; /* object in run.json; NULL: the outermost */
+  bool json_only;    /* not in the line: may contain spaces */
   const char *text;
   int64_t integer;
   double real;
@@ -62,7 +62,7 @@ static struct figure *add_real(struct figures *figures, const char *name, double
   return figure;
 }
 
-/* Left out where they are not known. */
+/* Only units that are known. */
 static void add_units(struct figures *figures, const struct units *units)
 {
   const struct {

@@ -9,12 +9,12 @@ static const char head[] = "<?xml version=\"1.0\"?>\n<Xdmf Version=\"2.0\">\n<Do
                            "<Grid Name=\"series\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
 static const char tail[] = "</Grid>\n</Domain>\n</Xdmf>\n";
 
-/* More than a snapshot: what is added goes to the file in one piece. */
+/* Larger than a snapshot, so that each addition is one write. */
 enum { BUFFER = 1 << 14 };
 
 enum kind { SCALAR, VECTOR, NUMBER };
 
-/* A value of every cell or disc. */
+/* A quantity of every cell or disc. */
 struct attribute {
   const char *name;
   enum kind kind;
@@ -51,8 +51,8 @@ static void write_attributes(FILE *file, const struct values *values, const stru
   }
 }
 
-/* Samples as points of a mesh, at the centres of their cells. A plane of three dimensions, listed z, y, x: ParaView 5.11
- * stands a mesh of two upright, and takes no values for cells of no thickness. */
+/* Samples as points of a mesh, at the centres of their cells. The mesh has three dimensions, listed z, y, x, one
+ * layer in z: ParaView 5.11 rotates a two-dimensional mesh upright, and ignores values of cells without thickness. */
 static void write_flow(FILE *file, const struct sample_grid *grid, int64_t step)
 {
   char dimensions[64];

@@ -1,4 +1,4 @@
-/* fields.xdmf: the text that tells ParaView and others what lies where in fields.h5, with an end at any time. */
+/* fields.xdmf: the index of fields.h5 for ParaView and other readers, valid after each snapshot. */
 #ifndef DELBM_OUTPUT_XDMF_H
 #define DELBM_OUTPUT_XDMF_H
 
@@ -12,10 +12,10 @@ struct xdmf {
   FILE *stream; /* NULL: closed */
 };
 
-/* Starts the file anew, without snapshots. The path must outlive it. */
+/* Creates the file without snapshots. The path must outlive *xdmf. */
 bool xdmf_open(struct xdmf *xdmf, const char *path, const struct sample_grid *grid, struct status *status);
 
-/* Adds a snapshot with so many points for its discs. */
+/* Adds a snapshot with `points` points for discs. */
 bool xdmf_add(struct xdmf *xdmf, int64_t step, size_t points, struct status *status);
 
 bool xdmf_close(struct xdmf *xdmf, struct status *status);

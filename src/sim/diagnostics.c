@@ -1,3 +1,10 @@
+/* Moments of a cell from its nine deviations g_i = f_i - w_i: rho = 1 + sum g_i, j = sum e_i g_i, and with a force F
+ * the velocity (j + F/2)/rho.
+ *
+ * diagnostics_totals adds the sums of rows in an ordered section, in the order of y. diagnostics_worst finds the
+ * worst row with the vectorised scan_row, each thread over its own rows, and then the cell within this row; of equal
+ * rows the lower y is taken. Both results therefore have the same bits for any number of threads. Nothing is written
+ * but the results: no race. */
 #include "sim/diagnostics.h"
 
 #include "base/threads.h"
@@ -43,7 +50,7 @@ struct fluid_totals diagnostics_totals(const struct populations *p)
   return totals;
 }
 
-/* The cell of row y that makes its speed what the scan found: the fastest, or the first that is not finite. */
+/* The cell of row y to report: the first that is not finite, otherwise the fastest. */
 static struct worst_cell worst_of_row(const struct populations *p, int y)
 {
   struct worst_cell worst = {.speed2 = -1, .y = y};
@@ -56,7 +63,7 @@ static struct worst_cell worst_of_row(const struct populations *p, int y)
   return worst;
 }
 
-/* True where row speed a is worse than b: faster, or not finite. */
+/* Order of severity: not finite, then faster. */
 static bool worse(double a, double b)
 {
   return isnan(a) ? !isnan(b) : a > b;
@@ -103,8 +110,8 @@ void diagnostics_row(const struct populations *p, const struct fluid_force *forc
     const struct cell_moments m = moments_at(p, x, y);
     const double rho = 1 + m.excess;
     if (density) density[x] = rho;
-    if (ux) ux[x] = (m.jx + (rho * force->mass[0] + force->uniform[0]) / 2) / rho;
-    if (uy) uy[x] = (m.jy + (rho * force->mass[1] + force->uniform[1]) / 2) / rho;
+    if (ux) ux[x] = (m.jx + (rho * force->per_mass[0] + force->uniform[0]) / 2) / rho;
+    if (uy) uy[x] = (m.jy + (rho * force->per_mass[1] + force->uniform[1]) / 2) / rho;
   }
 }
 

@@ -1,12 +1,13 @@
-/* Looks at the state: mass, momentum, the fastest cell, what is not finite. Sums are taken per row, the rows added in
- * order: the same bits for any number of threads. */
+/* Diagnostics of the fluid: mass, momentum, fastest cell, values that are not finite, density and velocity of cells.
+ * Sums are formed per row and the rows added in order: the same bits for any number of threads. Call outside of
+ * parallel regions. All functions read the populations before the coming collision. */
 #ifndef DELBM_SIM_DIAGNOSTICS_H
 #define DELBM_SIM_DIAGNOSTICS_H
 
 #include "fluid/sweep.h"
 #include "solid/discs.h"
 
-/* Speed of Mach 0.6, 0.6 c_s: beyond it the expansion behind the method has lost its meaning. */
+/* 0.6 c_s, Mach 0.6: beyond it the low-Mach expansion of the equilibrium is invalid. */
 static const double diagnostics_fastest = 0.34641016151377546;
 
 /* Sums of rho - 1 and j over all cells. */
@@ -14,22 +15,21 @@ struct fluid_totals {
   double excess_mass, jx, jy;
 };
 
-/* The worst cell found by a look for divergence. */
+/* The worst cell found by a check for divergence. */
 struct worst_cell {
   double speed2; /* NAN if a cell is not finite */
   int x, y;
 };
 
-/* All read the populations that the coming step will collide. Outside of parallel regions. */
 struct fluid_totals diagnostics_totals(const struct populations *populations);
 struct worst_cell diagnostics_worst(const struct populations *populations, scan_row *scan);
 
-/* The largest speed of the cells whose speed is finite. */
+/* The largest finite speed of all cells. */
 double diagnostics_largest_speed(const struct populations *populations);
 
-/* Body force per unit mass and per unit volume that act on the fluid. */
+/* Body force on the fluid: per unit mass, and per unit volume. */
 struct fluid_force {
-  double mass[2], uniform[2];
+  double per_mass[2], uniform[2];
 };
 
 /* Density and velocity of the cells of row y into arrays of nx. */

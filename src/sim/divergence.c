@@ -1,6 +1,6 @@
-/* The causes are looked for in the order of their weight as evidence. What the run shows (fluid that cannot leave) comes
- * before what the case leads one to expect: discs too light for the explicit solve or too heavy for the fluid, a start that is too sudden, a speed that is too high, cells that are too coarse,
- * a viscosity that is too small. */
+/* Candidate causes are tested in the order of their weight as evidence. First the state of the run: fluid that
+ * cannot leave. Then estimates from the case: discs too light for the explicit solve or too heavy for the fluid, a
+ * sudden start, too high a speed, cells too coarse, too small a viscosity. */
 #include "sim/divergence.h"
 
 #include "sim/estimate.h"
@@ -8,10 +8,10 @@
 #include <math.h>
 #include <stdio.h>
 
-/* Excess of the mean density above which a box is said to hold too much fluid. */
+/* Excess of the mean density above which the box counts as overfull. */
 static const double large_excess = 0.1;
 
-/* Part of a side before which discs lie, no farther from it than a diameter. */
+/* Fraction of a side blocked by discs within a diameter of it. */
 static double part_closed(const struct divergence *of, enum side_name side)
 {
   double closed = 0;
@@ -22,7 +22,7 @@ static double part_closed(const struct divergence *of, enum side_name side)
   return fmin(1, closed / of->scene->domain.size[!side_axis(side)]);
 }
 
-/* The outlet that is closed most. */
+/* The outlet with the largest blocked fraction. */
 static enum side_name worst_outlet(const struct divergence *of, double *part)
 {
   enum side_name worst = SIDE_COUNT;
@@ -34,7 +34,7 @@ static enum side_name worst_outlet(const struct divergence *of, double *part)
   return worst;
 }
 
-/* Discs that dam the flow: where more fluid enters than leaves, its pressure rises until something gives way. */
+/* Discs that block an outlet: inflow exceeds outflow, and the pressure rises without bound. */
 static bool explain_dam(const struct divergence *of, struct status *status)
 {
   const double least_part = 0.5;
@@ -62,11 +62,11 @@ static bool explain_load(const struct divergence *of, struct status *status)
 {
   for (int axis = 0; axis < 2; axis++) {
     const double part = estimate_load(of->scene, axis);
-    if (part < estimate_most_load) continue;
+    if (part < estimate_max_load) continue;
     status_add(status,
                "; the discs weigh %.0f %% of the fluid's pressure on the side below; better: particles.gravity <= %.2g "
                "cells/step^2, and more steps",
-               100 * part, fabs(of->scene->particles.gravity[axis]) * estimate_most_load / part);
+               100 * part, fabs(of->scene->particles.gravity[axis]) * estimate_max_load / part);
     return true;
   }
   return false;
@@ -84,8 +84,8 @@ static enum side_name fastest_inlet(const struct scene *scene, double *speed)
   return fastest;
 }
 
-/* Fluid at rest is set in motion by a wave of relative density U/c_s, which crosses the box; beside discs potential flow has
- * up to twice the speed. Reflections last some crossings. */
+/* An inlet into fluid at rest starts a wave of relative density U/c_s across the box; beside discs potential flow
+ * has up to twice the speed. Reflections persist for several crossings. */
 static bool explain_start(const struct divergence *of, struct status *status)
 {
   const double crossings = 4;
@@ -104,30 +104,30 @@ static bool explain_start(const struct divergence *of, struct status *status)
   return true;
 }
 
-/* A force may have done so within the steps so far; the number to change is told for the whole run. */
+/* Speed reached by a force within the steps done; the advised value of the key is for the whole run. */
 static bool explain_speed(const struct divergence *of, const struct estimate *so_far, struct status *status)
 {
   if (so_far->speed <= scene_advised_speed) return false;
   const int64_t steps = of->scene->run.steps > of->step ? of->scene->run.steps : of->step;
   const struct estimate fastest = estimate_fastest(of->scene, steps);
   status_add(status, "; %s leads to speeds of about %.2g cells/step (Mach %.2g); better: %s <= %.2g %s", fastest.key,
-             fastest.speed, fastest.speed * sqrt(3), fastest.key, fastest.most, fastest.unit);
+             fastest.speed, fastest.speed * sqrt(3), fastest.key, fastest.advised, fastest.unit);
   return true;
 }
 
 static bool explain_cells(const struct divergence *of, const struct estimate *fastest, struct status *status)
 {
   const double grid_reynolds = fastest->speed / of->scene->fluid.viscosity;
-  if (grid_reynolds <= estimate_most_grid_reynolds) return false;
+  if (grid_reynolds <= estimate_max_grid_reynolds) return false;
   status_add(
       status,
       "; the grid Reynolds number (of one cell) is %.3g, above %g: the cells are too coarse for the flow; better: "
       "fluid.viscosity >= %.2g",
-      grid_reynolds, estimate_most_grid_reynolds, fastest->speed / estimate_most_grid_reynolds);
+      grid_reynolds, estimate_max_grid_reynolds, fastest->speed / estimate_max_grid_reynolds);
   return true;
 }
 
-/* Distance of a cell's centre from the rim of a disc, along an axis the nearest image. */
+/* Distance of the cell's centre from the rim of a disc, nearest image. */
 static double gap(const struct divergence *of, size_t disc)
 {
   double d[2] = {of->cell[0] + 0.5 - of->discs->x[disc], of->cell[1] + 0.5 - of->discs->y[disc]};
@@ -146,7 +146,7 @@ static enum side_name side_near(const struct divergence *of, double reach)
   return SIDE_COUNT;
 }
 
-/* Fluid between surfaces that approach at a speed U leaves a gap h at about U sqrt(2 R/h). */
+/* Fluid squeezed out of a gap h between surfaces that approach at speed U has a speed of about U sqrt(2 R/h). */
 static bool explain_squeeze(const struct divergence *of, struct status *status)
 {
   const double reach = 3;
@@ -172,7 +172,7 @@ static bool explain_squeeze(const struct divergence *of, struct status *status)
 
 static bool explain_viscosity(const struct divergence *of, struct status *status)
 {
-  const double least = (estimate_least_tau - 0.5) / 3;
+  const double least = (estimate_min_tau - 0.5) / 3;
   if (of->scene->fluid.viscosity >= least) return false;
   status_add(status, "; a viscosity of %g hardly damps errors; better: fluid.viscosity >= %g",
              of->scene->fluid.viscosity, least);

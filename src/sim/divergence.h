@@ -1,4 +1,4 @@
-/* Why a run diverged: the cause that its numbers point to, and the number to change, in words for a person. */
+/* The probable cause of divergence and the key to change, as text for the user. */
 #ifndef DELBM_SIM_DIVERGENCE_H
 #define DELBM_SIM_DIVERGENCE_H
 
@@ -9,11 +9,11 @@ struct divergence {
   const struct scene *scene;
   const struct discs *discs; /* as they are now */
   int64_t step;
-  double excess; /* mean over all cells of density - 1; NAN: not known */
-  int cell[2];   /* the fastest one, or one that is not finite; -1: not known */
+  double excess; /* mean over all cells of density - 1; NAN: unknown */
+  int cell[2];   /* the fastest cell, or a cell that is not finite; -1: unknown */
 };
 
-/* Adds the cause, where one is found, to the message of *status. */
+/* Appends the cause, if one is found, to the message of *status. */
 void divergence_explain(const struct divergence *divergence, struct status *status);
 
 #endif

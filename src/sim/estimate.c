@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 
-/* Force per density and depth on a cylinder of that radius in a stream. */
+/* Force per density and depth on a cylinder in a stream. */
 static double cylinder_drag(double radius, double viscosity, double speed)
 {
   const double re = 2 * speed * radius / viscosity;
@@ -24,14 +24,14 @@ double estimate_settling(double radius, double viscosity, double weight)
   return low;
 }
 
-/* Force over viscosity and mean speed of a square array of cylinders at Re = 0. */
+/* K = F/(mu U) of a square array of cylinders at Re = 0 (Sangani & Acrivos 1982). */
 static double array_drag(double fraction)
 {
   const double f = fraction;
   return 4 * M_PI / (-0.5 * log(f) - 0.738 + f - 0.887 * f * f + 2.038 * f * f * f);
 }
 
-/* Fluid that a force per unit mass drives past the fixed discs of the scene; INFINITY without any. */
+/* Mean speed of fluid driven past the fixed discs by a force per unit mass; INFINITY without fixed discs. */
 static double past_fixed_discs(const struct scene *scene, double force)
 {
   const double cells = (double)scene_cells(scene), viscosity = scene->fluid.viscosity;
@@ -67,7 +67,7 @@ static void consider_sides(struct estimate *fastest, const struct scene *scene)
   for (int k = 0; k < SIDE_COUNT; k++) {
     const double *u = scene->domain.side[k].velocity;
     struct estimate own = {
-        .speed = hypot(u[0], u[1]), .from = "the sides", .most = scene_advised_speed, .unit = "cells/step"};
+        .speed = hypot(u[0], u[1]), .from = "the sides", .advised = scene_advised_speed, .unit = "cells/step"};
     snprintf(own.key, sizeof own.key, "domain.%s.velocity", side_name_text((enum side_name)k));
     consider(fastest, &own);
   }
@@ -78,11 +78,11 @@ static void consider_disc(struct estimate *fastest, const struct scene *scene, s
   const struct disc_spec *disc = &scene->particles.discs[i];
   const double along = hypot(disc->velocity[0], disc->velocity[1]), rim = fabs(disc->spin) * disc->radius;
   const double advised = scene_advised_speed;
-  struct estimate own = {.speed = along + rim, .from = "the discs", .most = advised, .unit = "cells/step"};
+  struct estimate own = {.speed = along + rim, .from = "the discs", .advised = advised, .unit = "cells/step"};
   snprintf(own.key, sizeof own.key, "particles.discs.%zu.velocity", i);
   if (rim > along) {
     snprintf(own.key, sizeof own.key, "particles.discs.%zu.spin", i);
-    own.most = advised / disc->radius;
+    own.advised = advised / disc->radius;
     own.unit = "radians/step";
   }
   consider(fastest, &own);
@@ -98,7 +98,7 @@ static void consider_weight(struct estimate *fastest, const struct scene *scene,
       .speed = estimate_settling(disc->radius, viscosity, weight),
       .from = "the discs",
       .key = "particles.gravity",
-      .most = cylinder_drag(disc->radius, viscosity, scene_advised_speed) / buoyant,
+      .advised = cylinder_drag(disc->radius, viscosity, scene_advised_speed) / buoyant,
       .unit = "cells/step^2",
   };
   consider(fastest, &own);
@@ -118,7 +118,7 @@ static void consider_force(struct estimate *fastest, const struct scene *scene, 
     else
       high = weaker.fluid.force[axis];
   }
-  own.most = low;
+  own.advised = low;
   consider(fastest, &own);
 }
 

@@ -1,8 +1,8 @@
-/* The state that the fluid starts from. */
+/* The initial state of the fluid. */
 #ifndef DELBM_SIM_INITIAL_H
 #define DELBM_SIM_INITIAL_H
 
-/* Density, velocity and gradient[a][b] = d velocity[a]/d x_b in the middle of a cell. */
+/* Density, velocity and gradient[a][b] = d velocity[a]/d x_b at the centre of a cell. */
 struct flow_state {
   double density, velocity[2], gradient[2][2];
 };

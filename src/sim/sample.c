@@ -1,3 +1,6 @@
+/* Each thread samples whole rows of the grid with its own buffers: density and velocity of row y, ux of the rows beside
+ * it for the vorticity d(uy)/dx - d(ux)/dy (central differences, vorticity.h), and the total occupation fraction of the
+ * discs. Rows of the destination arrays are disjoint: no race, and the same bits for any number of threads. */
 #include "sim/sample.h"
 
 #include "base/memory.h"
@@ -21,7 +24,7 @@ struct sample_grid sample_grid_of(const struct scene *scene)
   return grid;
 }
 
-/* What is sampled and where it goes. */
+/* Source and destination of the samples. */
 struct sampling {
   const struct populations *populations;
   const struct fluid_force *force;
@@ -32,10 +35,10 @@ struct sampling {
   bool periodic[2];
 };
 
-/* Buffers of one thread, of nx each but the last: density and velocity of a row, ux of the rows beside it, the part that
- * discs cover, and that of one disc. */
+/* Buffers of one thread: density and velocity of a row, ux of the rows below and above, total occupation fraction,
+ * nx each; occupation fractions of one disc (widest_row). */
 struct sample_rows {
-  double *rho, *ux, *uy, *below, *above, *covered, *disc;
+  double *rho, *ux, *uy, *below, *above, *fraction, *disc;
 };
 
 static void sample_row(const struct sampling *s, const struct sample_rows *rows, int row)
@@ -47,7 +50,7 @@ static void sample_row(const struct sampling *s, const struct sample_rows *rows,
   diagnostics_row(p, s->force, v.low, NULL, rows->below, NULL);
   diagnostics_row(p, s->force, v.high, NULL, rows->above, NULL);
   if (s->occupation && s->sample->occupation)
-    occupation_fractions(s->occupation, s->discs, y, rows->covered, rows->disc);
+    occupation_fractions(s->occupation, s->discs, y, rows->fraction, rows->disc);
   for (int k = 0; k < s->grid->count[0]; k++) {
     const int x = s->grid->first[0] + k * s->grid->stride;
     const size_t at = (size_t)row * (size_t)s->grid->count[0] + (size_t)k;
@@ -60,11 +63,11 @@ static void sample_row(const struct sampling *s, const struct sample_rows *rows,
       to->vorticity[at] =
           stencil_slope(&h, rows->uy[h.low], rows->uy[h.high]) - stencil_slope(&v, rows->below[x], rows->above[x]);
     if (to->pressure) to->pressure[at] = (rows->rho[x] - 1) / 3;
-    if (to->occupation) to->occupation[at] = rows->covered[x];
+    if (to->occupation) to->occupation[at] = rows->fraction[x];
   }
 }
 
-/* Room for the cells of a row of any disc (occupation_fractions). */
+/* Upper bound of the cells of a disc in a row, with padding (occupation_fractions). */
 static size_t widest_row(const struct discs *discs)
 {
   double radius = 0;

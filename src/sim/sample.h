@@ -1,4 +1,4 @@
-/* Samples of the flow: every `stride`-th cell of part of the box, in x and in y. */
+/* Samples of the flow: every `stride`-th cell of a region of the box, in x and in y. */
 #ifndef DELBM_SIM_SAMPLE_H
 #define DELBM_SIM_SAMPLE_H
 
@@ -11,13 +11,13 @@ struct sample_grid {
   int stride;   /* cells from one to the next */
 };
 
-/* One value a sample, row by row from the bottom: arrays of count[0] * count[1], of which any may be NULL. */
+/* One value a sample, row by row from the bottom: arrays of count[0] * count[1]; any may be NULL. */
 struct sample {
   double *rho;        /* density; 1 at rest */
   double *velocity;   /* three numbers each: ux, uy, 0 */
-  double *vorticity;  /* d(uy)/dx - d(ux)/dy, from the neighbouring cells, whatever the stride */
-  double *pressure;   /* (rho - 1)/3, above that at rest */
-  double *occupation; /* share of the cell that discs cover */
+  double *vorticity;  /* d(uy)/dx - d(ux)/dy, from the neighbouring cells at any stride */
+  double *pressure;   /* above the pressure at rest: (rho - 1)/3 */
+  double *occupation; /* occupation fraction: part of the cell's area inside discs */
 };
 
 /* The grid of output.fields. */
@@ -33,8 +33,8 @@ struct fluid_force;
 struct occupation;
 struct discs;
 
-/* Outside of parallel regions. `periodic`: the sides of each axis. `occupation` is NULL in a scene without discs; else it is
- * that of `discs`. Fails only for want of memory. */
+/* Outside of parallel regions. `periodic`: of each axis. `occupation`: of `discs`; NULL in a scene without discs.
+ * Fails only for want of memory. */
 bool sample_take(const struct populations *populations, const bool periodic[2], const struct fluid_force *force,
                  const struct occupation *occupation, const struct discs *discs, const struct sample_grid *grid,
                  const struct sample *sample, struct status *status);

@@ -511,7 +511,8 @@ void simulation_report(struct simulation *s, struct simulation_report *report)
                                        .max_mach = s->max_mach,
                                        .max_substeps = s->stages.exchange ? s->contacts.max_substeps : 1};
   for (int axis = 0; axis < 2; axis++) /* with half of the force of the coming step, as in the fields */
-    report->mean_velocity[axis] = (momentum[axis] + (mass * force.mass[axis] + cells * force.uniform[axis]) / 2) / mass;
+    report->mean_velocity[axis] =
+        (momentum[axis] + (mass * force.per_mass[axis] + cells * force.uniform[axis]) / 2) / mass;
   tuning_text(&s->tuning, report->blocking);
   threads_binding(report->binding);
 }

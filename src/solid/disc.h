@@ -1,4 +1,4 @@
-/* The shape of a disc, apart from the cells that it covers (disc_kernel.c). Functions of struct shape_kind. */
+/* The members of struct shape_kind (shape.h) for a disc, but for its cells (disc_kernel.c). */
 #ifndef DELBM_SOLID_DISC_H
 #define DELBM_SOLID_DISC_H
 

@@ -1,10 +1,10 @@
-/* The exact area that a disc shares with a cell, in closed form.
+/* The exact area of the intersection of a disc and a cell, in closed form.
  *
- * With the centre at the origin, let area(a, b) be that of the disc's part {x > a, y > b}. A cell's area is its
- * alternating sum over the four corners. For a corner inside the disc it separates,
+ * With the centre at the origin, let area(a, b) be the area of the disc's part {x > a, y > b}. The area in a cell is
+ * the alternating sum of area(a, b) over the four corners. For a corner inside the disc the variables separate,
  *   area(a, b) = pi R^2/4 - D(a) - D(b) + a b,   D(t) = (R^2 asin(t/R) + t sqrt(R^2 - t^2))/2,
- * and for one outside it depends on the quadrant. So a disc costs one arcsine per grid line; each corner serves four
- * cells. D is continued beyond the disc by its values at +-R. */
+ * and outside the disc area(a, b) depends on the quadrant of the corner. So a disc costs one arcsine per grid line;
+ * each corner serves four cells. D is continued beyond the disc by its values at +-R. */
 #ifndef DELBM_SOLID_DISC_AREA_H
 #define DELBM_SOLID_DISC_AREA_H
 
@@ -36,8 +36,8 @@ static inline double disc_corner_area(double radius, const struct disc_line *a, 
   return b->t >= 0 ? above : right + above - M_PI * radius * radius;
 }
 
-/* Area shared by a disc centred at (0, 0) and the unit square whose lower left corner is (x, y): cell by cell, the slow
- * way. */
+/* Area of the intersection of a disc centred at (0, 0) and the unit square with lower left corner (x, y). Evaluates
+ * four corners for each cell; disc_kernel.c is the fast form. */
 double disc_cell_area(double radius, double x, double y);
 
 #endif

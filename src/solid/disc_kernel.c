@@ -1,4 +1,17 @@
-/* Areas by line tables, in plain loops that vectorise: whole vectors, so that none ends in a remainder. */
+/* Occupation fractions of a disc, compiled once per instruction set (VARIANT).
+ *
+ * Per disc three functions of the distance t of a grid line from the centre are tabulated for its column lines and
+ * its row lines: t, the half chord h = sqrt(R^2 - t^2) and D(t) (disc_area.h). The tables determine area(a, b) at
+ * every corner and from the corners eps = alternating sum over the four corners of a cell. The cost is one arcsine a
+ * line, not eight a cell, and no branch depends on the cell.
+ *
+ * extents    first and last cell of each row, and the cells wholly inside, from the chords at the row's two lines
+ * fractions  eps of all touched cells. Discs up to NARROW lines wide: all corners of a row at once. Wider discs:
+ *            tiles of TILE cells; cells wholly inside are set to 1, and tiles without a rim cell are skipped
+ * weights    B of eps (weight.h)
+ *
+ * Loops run over whole vectors of VECTOR elements without a scalar remainder, so that a cell's bits do not depend on
+ * its position in a row. Functions write only to their arguments and the stack: threads need no locks. */
 #include "solid/disc.h"
 #include "solid/solid_kernel.h"
 
@@ -12,7 +25,7 @@
 
 enum { VECTOR = 8 };
 
-/* Rounds up; as a mask, by which the compiler sees that loops of that length have no remainder. */
+/* n rounded up to whole vectors; the mask tells the compiler that such loops have no remainder. */
 static inline int whole_vectors(int n)
 {
   return (n + VECTOR - 1) & -VECTOR;
@@ -37,9 +50,9 @@ static inline double arcsine_rest(double z)
   return p * z + 1.0 / 6;
 }
 
-/* Grid lines at integer places, seen from a disc's centre: distance t, half chord h (0 beyond the disc) and D(t). */
+/* Tables over grid lines: distance t from a disc's centre, half chord h (0 outside the disc), area = D(t). */
 enum {
-  NARROW = 64,           /* lines of a table; discs with more are taken tile by tile */
+  NARROW = 64,           /* lines in a table; wider discs are split into tiles */
   TILE = NARROW - VECTOR /* cells of a tile: vectors may read past their lines */
 };
 
@@ -53,8 +66,9 @@ static inline double half_chord(double radius, double t)
   return sqrt(inside * (radius + away));
 }
 
-/* asin(t/R) for 0 <= t < R; from t = R/2 on by pi/2 - 2 asin(sqrt((1 - t/R)/2)), where R - t loses nothing. Lines are
- * taken at line - centre: the same bits wherever they are needed. */
+/* Fills a table with `count` lines from `first` on. asin(t/R) from t = R/2 on is pi/2 - 2 asin(sqrt((1 - t/R)/2)),
+ * without cancellation in R - t. t is always formed as line - centre, so that a line has the same bits in every
+ * table. */
 static inline void lines_at(double radius, double centre, int first, int count, struct lines *lines)
 {
   const double inverse = 1 / radius, r2 = radius * radius, quarter = M_PI / 4 * r2;
@@ -76,14 +90,14 @@ static inline void lines_at(double radius, double centre, int first, int count, 
   }
 }
 
-/* area(a, b) of the corners of `count` column lines, from line `first` on, and the one row line b. */
+/* area(a, b) at the corners of row line b with `count` column lines from line `first` on. */
 static inline void corners(double radius, const struct lines *rows, int b, int first, int count,
                            const struct lines *columns, double *restrict corner)
 {
   const double t_b = rows->t[b], h_b = rows->h[b], area_b = rows->area[b];
   const double whole = M_PI * radius * radius, above = 0.5 * whole - 2 * area_b; /* of the part y > b */
   const double left =
-      t_b < 0 ? above - 0.5 * whole : above; /* with x > a, of a corner outside and left, less -2 D(a) */
+      t_b < 0 ? above - 0.5 * whole : above; /* area(a, b) of a corner outside and left, without its term -2 D(a) */
   const int n = whole_vectors(count);
 #pragma omp simd
   for (int k = 0; k < n; k++) {
@@ -96,7 +110,7 @@ static inline void corners(double radius, const struct lines *rows, int b, int f
   }
 }
 
-/* eps of cells first .. end - 1 between two lines of corners; those from full to full_end - 1 are covered. */
+/* eps of cells first .. end - 1 between two lines of corners; 1 in cells full .. full_end - 1. */
 static inline void cells(const double *restrict low, const double *restrict high, int first, int end, int full,
                          int full_end, double *restrict eps)
 {
@@ -122,7 +136,7 @@ static void KERNEL(extents)(const struct shape *disc, const struct pose *pose, i
     const double t_low = (double)(first_row + r) - y, t_high = (double)(first_row + r + 1) - y;
     const double h_low = half_chord(radius, t_low), h_high = half_chord(radius, t_high);
     const double wider = h_low > h_high ? h_low : h_high, narrow = h_low > h_high ? h_high : h_low;
-    const double wide = t_low < 0 && t_high > 0 ? radius : wider; /* if the widest chord lies inside this row */
+    const double wide = t_low < 0 && t_high > 0 ? radius : wider; /* R if the centre lies in this row */
     const int first = (int)floor(-wide - left), end = (int)ceil(wide - left);
     const int full = (int)ceil(-narrow - left), full_end = (int)floor(narrow - left);
     const bool some = narrow > 0 && full < full_end;
@@ -133,9 +147,9 @@ static void KERNEL(extents)(const struct shape *disc, const struct pose *pose, i
   }
 }
 
-/* A disc whose lines fit one table, rows from .. end - 1: each corner serves four cells. Round-off may put its right
- * edge past its last column: hence one line more. All corners come before all cells, since a vector that is read across
- * two just written would wait until they have reached the cache. */
+/* Rows from .. end - 1 of a disc whose lines fit one table. One line is added, since round-off may put the right
+ * edge past the last column. All corners are computed before all cells: an unaligned load across two pending stores
+ * would stall (no store forwarding). */
 static void narrow_rows(double radius, double x, const struct lines *row_lines, int from, int end,
                         const struct row_extents *e, double *eps)
 {
@@ -145,7 +159,7 @@ static void narrow_rows(double radius, double x, const struct lines *row_lines, 
   lines_at(radius, x, column, columns, &column_lines);
   for (int r = from; r <= end; r++) {
     corners(radius, row_lines, r - from, 0, columns, &column_lines, table[r - from]);
-    memset(table[r - from] + whole_vectors(columns), 0, VECTOR * sizeof table[0][0]); /* what the last vector reads */
+    memset(table[r - from] + whole_vectors(columns), 0, VECTOR * sizeof table[0][0]); /* read by the last vector */
   }
   for (int r = from; r < end; r++) {
     cells(table[r - from], table[r - from + 1], e->first[r], e->end[r], e->full[r], e->full_end[r], eps);
@@ -153,8 +167,8 @@ static void narrow_rows(double radius, double x, const struct lines *row_lines, 
   }
 }
 
-/* Of cells first .. end - 1 of a row those in the tile of lines that begins at `tile`, between row lines r and r + 1: part
- * of a rim. `eps` is that of cell `first`. */
+/* Rim cells (partly inside) of a row, between row lines r and r + 1: cells first .. end - 1, cut to the tile that
+ * begins at line `tile`. eps[0] belongs to cell `first`. */
 static void rim_cells(double radius, const struct lines *row_lines, int r, const struct lines *column_lines, int tile,
                       int first, int end, double *eps)
 {
@@ -167,7 +181,7 @@ static void rim_cells(double radius, const struct lines *row_lines, int r, const
   memcpy(eps + (low - first), area, (size_t)n * sizeof *eps);
 }
 
-/* True if a cell of some row's rim lies in the tile. */
+/* True if a rim cell of any row lies in the tile. */
 static bool rim_in_tile(const struct row_extents *e, int from, int end, int tile)
 {
   for (int r = from; r < end; r++)
@@ -176,7 +190,7 @@ static bool rim_in_tile(const struct row_extents *e, int from, int end, int tile
   return false;
 }
 
-/* A disc with more lines than one table holds, tile by tile; those without a rim are passed over. */
+/* Rows of a disc with more than NARROW lines, tile by tile. */
 static void wide_rows(double radius, double x, const struct lines *row_lines, int from, int end,
                       const struct row_extents *e, double *eps)
 {

@@ -7,7 +7,7 @@
 
 enum { DOUBLE_ARRAYS = 17 };
 
-/* Carves the arrays from one block, each on a cache line of its own. */
+/* Assigns the arrays to parts of one block, each aligned to a cache line. */
 static void carve(struct discs *d, char *block, size_t stride)
 {
   double **const arrays[DOUBLE_ARRAYS] = {

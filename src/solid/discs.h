@@ -16,16 +16,16 @@ struct discs {
   size_t count;
   struct shape *shape;
   double *radius;                  /* of the shape's smallest circle about its centroid (shape.h) */
-  double *mass, *fluid_mass;       /* density times area: of the solid, of the fluid that it displaces */
-  double *inertia, *fluid_inertia; /* those masses times the square of the radius of gyration */
+  double *mass, *fluid_mass;       /* density times area: of the solid, of the displaced fluid */
+  double *inertia, *fluid_inertia; /* mass and fluid mass times the square of the radius of gyration */
   uint8_t *motion;                 /* enum disc_motion */
   double *x, *y, *angle;           /* centre (inside the box where it is periodic), rotation since the start */
   double *vx, *vy, *omega;
   double *fx, *fy, *torque;                         /* of the fluid on the solid, last step (exchange.h) */
   double *contact_fx, *contact_fy, *contact_torque; /* of discs and walls on the disc, last step */
-  size_t moving;                                    /* how many are not fixed */
-  size_t free;                                      /* how many move by the forces on them */
-  void *block;                                      /* what all of the arrays are carved from */
+  size_t moving;                                    /* number of discs that are not fixed */
+  size_t free;                                      /* number of discs that move by the forces on them */
+  void *block;                                      /* memory of all arrays */
 };
 
 bool discs_create(struct discs *discs, const struct scene *scene, struct status *status);
@@ -37,10 +37,11 @@ static inline struct pose discs_pose(const struct discs *discs, size_t i)
   return (struct pose){discs->x[i], discs->y[i], discs->angle[i]};
 }
 
-/* Saves or restores what changes: places, velocities and the forces of the last step. */
+/* Saves or restores positions, velocities and the forces of the last step. */
 bool discs_store(struct discs *discs, struct store *store, struct status *status);
 
-/* Displacement d along an axis of this size, or where it is periodic that of the nearest image; |d| < 3/2 size. */
+/* Displacement d along an axis of this size; on a periodic axis the displacement of the nearest image. |d| < 3/2
+ * size. */
 static inline double nearest_image(double d, double size, bool periodic)
 {
   if (!periodic || (d >= -size / 2 && d <= size / 2)) return d;

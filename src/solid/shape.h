@@ -1,5 +1,5 @@
-/* The shape of a body: what only the shape knows, behind one interface. The rest of the program knows a body by its pose and by
- * the functions of struct shape_kind. Shapes are convex, so that a body covers one run of cells in each row.
+/* The shape of a body. The rest of the program accesses a shape only by the functions of struct shape_kind. Shapes
+ * are convex, so that a body occupies one run of cells in each row.
  *
  * A new shape is one file that defines a struct shape_kind, the fields of struct shape for its measures, and a line in
  * discs.c that chooses it. Lattice units; angles in radians, counter-clockwise. */
@@ -29,29 +29,29 @@ enum {
   SHAPE_ROWS = 24 /* rows in one call, at most */
 };
 
-/* The cells of each of some rows: first .. end - 1, counted from the box's column; cells full .. full_end - 1 are covered
- * whole. */
+/* Cells of consecutive rows: cells first .. end - 1 are touched, counted from the box's column; cells full ..
+ * full_end - 1 have eps = 1. */
 struct row_extents {
   int32_t first[SHAPE_ROWS], end[SHAPE_ROWS], full[SHAPE_ROWS], full_end[SHAPE_ROWS];
 };
 
-/* Extents of rows first_row .. first_row + rows - 1 of the lattice, each of which the body touches. */
+/* Extents of rows first_row .. first_row + rows - 1 of the lattice, all touched by the body. */
 typedef void shape_extents(const struct shape *shape, const struct pose *pose, int first_row, int rows,
                            struct row_extents *extents);
 
-/* Occupation fractions of the cells of rows from_row .. end_row - 1 of those extents, one row after another. */
+/* Occupation fractions of the touched cells of rows from_row .. end_row - 1 of `extents`, row after row. */
 typedef void shape_fractions(const struct shape *shape, const struct pose *pose, int first_row, int from_row,
                              int end_row, const struct row_extents *extents, double *eps);
 
-/* Overlap of two bodies, or of a body and the half plane beyond a side: its area, and its chord, which is the derivative of
- * the area by the distance. */
+/* Overlap of two bodies, or of a body and the half plane beyond a side: its area, and its chord, which is the
+ * derivative of the area by the distance. */
 struct lens {
   double area, chord;
 };
 
 struct shape_kind {
   const char *name;
-  bool round; /* unchanged by rotation: cells need not be computed again when only the angle changes */
+  bool round; /* unchanged by rotation: a change of the angle alone leaves all cells as they are */
   double (*area)(const struct shape *shape);
   double (*gyration2)(const struct shape *shape); /* mean of r^2 over the area, about the centroid */
   struct shape_box (*box)(const struct shape *shape, const struct pose *pose);

@@ -5,7 +5,8 @@
 #include "fluid/weight.h"
 #include "solid/shape.h"
 
-/* The weights B of `count` cells of occupation fraction eps. Up to SHAPE_PAD - 1 elements past them are read and written. */
+/* The weights B of `count` cells of occupation fraction eps. Up to SHAPE_PAD - 1 elements past them are read and
+ * written. */
 typedef void solid_weights(const double *eps, int count, struct weight_law law, double *weight);
 
 struct solid_kernel {
@@ -13,8 +14,8 @@ struct solid_kernel {
   solid_weights *weights;
 };
 
-/* The kernel of the instruction set that a sweep kernel's name begins with (baseline, avx2, avx512); with NULL the
- * best that the processor runs. */
+/* The kernel for the instruction set at the start of a sweep kernel's name (baseline, avx2, avx512); for NULL the
+ * best that the processor supports. */
 const struct solid_kernel *solid_kernel_find(const char *name);
 
 #endif
