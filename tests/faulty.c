@@ -1,8 +1,8 @@
-/* Failures on demand. This is linked into programs of their own, `delbm-faulty` and `host-faulty`, where it takes the place of functions of
- * the C library, for them and for the libraries that they use. DELBM_FAIL="memory 17" lets the 17th allocation
- * after the start of main fail, and so on for `thread`, `file` and the name of a function, "lseek 2"; "memory 17 on"
- * also all that follow. A call that is made to fail is named in the file DELBM_FAILED_AT. DELBM_LOCALE sets a locale for the
- * process, as a library might that it is loaded with. The delbm that is installed has nothing of this. */
+/* Fault injection. Linked into the programs `delbm-faulty` and `host-faulty`, this file replaces functions of the C
+ * library for the program and for its libraries. DELBM_FAIL="memory 17" makes the 17th allocation after the start of
+ * main fail; likewise `thread`, `file` and the name of a function, "lseek 2"; with "memory 17 on" also all later
+ * allocations. A call that is made to fail is named in the file DELBM_FAILED_AT. DELBM_LOCALE sets the locale of the
+ * process. The installed delbm contains none of this. */
 #include "faulty.h"
 
 #include <dirent.h>
@@ -30,7 +30,7 @@ static bool lasting;
 static atomic_long calls;
 static int report = -1;
 
-/* The function that the one of this name here stands in front of. */
+/* The C library's function of this name. */
 #define ORIGINAL(name)                                                                                                 \
   static __typeof__(&name) original;                                                                                   \
   if (!original) *(void **)&original = dlsym(RTLD_NEXT, #name);
@@ -44,16 +44,16 @@ static bool is_to_fail(enum kind kind, const char *name)
   return true;
 }
 
-/* HDF5 does not survive a failure of its own allocations, or of those of a library that it calls: it can crash, or close
- * itself for ever. They are left alone: those that, seen from the caller outwards, come to HDF5 before they come to us. Not
- * inlined: a sanitizer's own start comes by malloc, before variables on the stack can be watched. */
+/* HDF5 can crash or shut down on a failed allocation within itself or within a library that it calls. Such
+ * allocations never fail: on the call stack, from the caller outwards, HDF5 comes before delbm. Not inlined, since
+ * sanitizers call malloc at their start, before they can instrument variables on the stack. */
 static __attribute__((noinline)) bool is_of_hdf5(const void *caller)
 {
   static _Thread_local bool looking;
   static char ours;
   void *frame[24];
   Dl_info self, at;
-  if (looking) return true; /* what looking itself allocates at first */
+  if (looking) return true; /* allocations of the search itself */
   looking = true;
   const int count = backtrace(frame, sizeof frame / sizeof frame[0]);
   int k = 0;
@@ -94,7 +94,7 @@ bool faulty_end(void)
   return atomic_load(&calls) >= chosen_call;
 }
 
-/* Runs after the constructors of the libraries: what these do is not the program's. */
+/* Runs after the constructors of the libraries, so that their calls are not counted. */
 static __attribute__((constructor)) void arm(void)
 {
   const char *wish = getenv("DELBM_FAIL"), *path = getenv("DELBM_FAILED_AT");
@@ -196,7 +196,7 @@ DIR *opendir(const char *path)
   return NULL;
 }
 
-/* A stream that a write has failed on remembers that. */
+/* A failed write sets the error flag of the stream. */
 size_t fwrite(const void *restrict data, size_t size, size_t count, FILE *restrict stream)
 {
   ORIGINAL(fwrite)
@@ -221,7 +221,7 @@ int fflush(FILE *stream)
   return is_to_fail(KIND_FILE, "fflush") ? no_room() : original(stream);
 }
 
-/* What fails to close is closed all the same. */
+/* A close that fails closes the stream nevertheless. */
 int fclose(FILE *stream)
 {
   ORIGINAL(fclose)

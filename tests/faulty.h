@@ -1,13 +1,13 @@
-/* Failures on demand within a program that faulty.c is linked to (its first lines say how they are named). */
+/* Fault injection in a program that is linked with faulty.c, which has the syntax. */
 #ifndef DELBM_TESTS_FAULTY_H
 #define DELBM_TESTS_FAULTY_H
 
 #include <stdbool.h>
 
-/* From now on calls fail as DELBM_FAIL=wish would have them from the start. */
+/* Starts fault injection as with DELBM_FAIL=wish at the start of the program. */
 void faulty_begin(const char *wish);
 
-/* Ends that; true if a call has failed. */
+/* Ends fault injection; true if a call has failed. */
 bool faulty_end(void);
 
 #endif

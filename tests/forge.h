@@ -1,4 +1,4 @@
-/* Checkpoints that no run has written, though their checksums are right. */
+/* Forged checkpoints with right checksums. */
 #ifndef DELBM_TESTS_FORGE_H
 #define DELBM_TESTS_FORGE_H
 

@@ -1,6 +1,6 @@
-/* A host of the library, of which every call of the C library fails in turn: `host-faulty memory | file` in a folder that
- * may be written to. Whatever fails, a call of the library leaves the simulation as it was, so that the same call made
- * again leads to the same bits as one that never failed; or it leaves one that says that it can only be read or closed. */
+/* A host of the library, in which every call of the C library fails in turn: `host-faulty memory | file` in a
+ * writable folder. A failed call of the library must leave the simulation unchanged, so that the repeated call leads
+ * to the same bits as a call that never failed; or in a state that can only be read or closed, and reports so. */
 #include "faulty.h"
 
 #include "delbm/delbm.h"
@@ -64,7 +64,7 @@ static enum delbm_code step(struct delbm_simulation *s, struct delbm_status *sta
   return delbm_step(s, 5, status);
 }
 
-/* All to the top, where bands then have more discs in them than ever before. */
+/* Moves all discs to the top, where the bands' arrays must then grow. */
 static enum delbm_code write_discs(struct delbm_simulation *s, struct delbm_status *status)
 {
   static const double x[DISCS] = {8, 19.5, 28.5, 36, 43};
@@ -111,7 +111,7 @@ static enum delbm_code load(struct delbm_simulation *s, struct delbm_status *sta
 static const struct operation {
   const char *name;
   enum delbm_code (*call)(struct delbm_simulation *s, struct delbm_status *status);
-  bool may_end; /* what fails may end the simulation */
+  bool may_end; /* a failure may end the simulation */
   enum delbm_code (*before)(struct delbm_simulation *s, struct delbm_status *status); /* NULL: nothing */
 } operations[] = {{.name = "step", .call = step, .may_end = true, .before = write_discs},
                   {.name = "write discs", .call = write_discs},
@@ -121,11 +121,11 @@ static const struct operation {
                   {.name = "save", .call = save},
                   {.name = "load", .call = load, .may_end = true}};
 
-/* A simulation that cannot go on says so, each time, and can be closed. */
+/* A simulation that has ended reports so at each call, and can be closed. */
 static void check_ended(struct delbm_simulation *s, const char *name, const char *wish)
 {
   struct delbm_status first, second;
-  read_occupation(s, &first); /* where a state is left, it can be read */
+  read_occupation(s, &first); /* if there is a state, it can be read */
   if (delbm_step(s, 1, &first) == DELBM_OK || delbm_save(s, "ended", &second) == DELBM_OK) die(name, wish, NULL);
   if (strcmp(first.message, second.message) != 0) die(name, wish, &second);
 }
@@ -169,7 +169,7 @@ static bool try_call(const struct operation *operation, const char *kind, int nu
   return failed;
 }
 
-/* By default a sample of the calls is tried where they are many: those of reading YAML, or of writing rows of a field. */
+/* By default a sample of the calls, where they are many: reading YAML, writing rows of a field. */
 static int stride_of(int stride)
 {
   return getenv("DELBM_EVERY_CALL") ? 1 : stride;
@@ -187,7 +187,7 @@ static void try_operation(const struct operation *operation, const char *kind)
   while (try_call(operation, kind, number, &expected)) number += number < 20 ? 1 : stride_of(23);
 }
 
-/* Opening leaves nothing. */
+/* A failed opening leaves *simulation NULL. */
 static void try_opening(const char *kind)
 {
   const int stride = stride_of(41);

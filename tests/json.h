@@ -1,4 +1,5 @@
-/* A strict reader of JSON (RFC 8259), for files that others read: no trailing commas, no NaN, no names without quotes. */
+/* A strict reader of JSON (RFC 8259), for files that others read: no trailing commas, no NaN, no names without
+ * quotes. */
 #ifndef DELBM_TESTS_JSON_H
 #define DELBM_TESTS_JSON_H
 

@@ -56,7 +56,7 @@ struct disc_spec *scene_add_disc(struct scene *scene, double radius, double dens
 
 struct scene scene_square_array(double radius, double solid_fraction, double viscosity, double force)
 {
-  /* a whole number of cells; the radius gives way, so that the fraction is exact */
+  /* a whole number of cells; the radius is adapted to the exact fraction */
   const int size = (int)lround(sqrt(M_PI * radius * radius / solid_fraction));
   struct scene scene = scene_box(size, size, viscosity, SIDES_PERIODIC);
   scene.fluid.force[0] = force;

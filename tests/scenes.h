@@ -1,4 +1,4 @@
-/* Scenes built in code, shared by tests and benchmarks. */
+/* Scenes built in code, for tests and benchmarks. */
 #ifndef DELBM_TESTS_SCENES_H
 #define DELBM_TESTS_SCENES_H
 
@@ -24,8 +24,8 @@ struct disc_spec *scene_add_disc(struct scene *scene, double radius, double dens
 /* A closed box full of discs on a jittered grid, settling as in the paper's Fig. 12: nu 0.05, density 1.01. */
 struct scene scene_crowd(int nx, int ny, double radius, double spacing, double jitter);
 
-/* One fixed disc in a periodic square cell, driven by a body force: the square array of cylinders. The radius is about
- * the wanted one, the solid fraction exact. */
+/* One fixed disc in a periodic square cell, driven by a body force: the square array of cylinders. The solid
+ * fraction is exact, the radius approximate. */
 struct scene scene_square_array(double radius, double solid_fraction, double viscosity, double force);
 
 #endif

@@ -1,4 +1,4 @@
-/* A test in a folder of its own, which runs the program by the shell as a user would. DELBM is its path. */
+/* A test in its own folder that runs the program by the shell like a user. DELBM is the path of the program. */
 #ifndef DELBM_TESTS_SHELL_H
 #define DELBM_TESTS_SHELL_H
 
@@ -17,7 +17,7 @@ static inline void shell_enter(void)
 {
   cr_assert(mkdtemp(shell_folder) && chdir(shell_folder) == 0);
   setenv("DELBM", DELBM, 1);
-  signal(SIGHUP, SIG_DFL); /* whatever the tests are run under: a program that starts with it ignored leaves it so */
+  signal(SIGHUP, SIG_DFL); /* nohup ignores it, and the program would inherit that */
 }
 
 static inline void shell_leave(void)

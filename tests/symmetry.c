@@ -41,7 +41,7 @@ static bool swaps_axes(const struct symmetry *s)
   return s->matrix[0][0] == 0;
 }
 
-/* The place in the image of a place in a box of this size. */
+/* Maps a position in a box of this size to the image. */
 static void place(const struct symmetry *s, const int size[2], double at[2])
 {
   for (int axis = 0; axis < 2; axis++) at[axis] -= size[axis] / 2.0;
@@ -49,7 +49,7 @@ static void place(const struct symmetry *s, const int size[2], double at[2])
   for (int axis = 0; axis < 2; axis++) at[axis] += size[swaps_axes(s) ? 1 - axis : axis] / 2.0;
 }
 
-/* The place in a box of this size that has this place in the image. */
+/* Maps a position in the image back to a box of this size. */
 static void place_back(const struct symmetry *s, const int size[2], double at[2])
 {
   for (int axis = 0; axis < 2; axis++) at[axis] -= size[swaps_axes(s) ? 1 - axis : axis] / 2.0;
@@ -95,7 +95,7 @@ struct scene symmetry_image(const struct scene *scene, const struct symmetry *s)
   return image;
 }
 
-/* The initial flow of an image: that of the scene, turned or reflected. */
+/* The initial flow of an image: the scene's flow, turned or reflected. */
 struct image_of_flow {
   const struct symmetry *symmetry;
   const int *size; /* of the scene's box */
@@ -120,7 +120,7 @@ static struct flow_state initial_of_image(const void *context, int x, int y)
   return state;
 }
 
-/* What is compared of each cell, and of each disc. */
+/* Values compared in each cell, and of each disc. */
 enum { RHO, UX, UY, VORTICITY, OCCUPATION, CELL_VALUES };
 enum { X, Y, ANGLE, VX, VY, RIM, FX, FY, TORQUE, CONTACT_FX, CONTACT_FY, CONTACT_TORQUE, DISC_VALUES };
 
@@ -149,7 +149,7 @@ static void free_result(struct result *r)
   free(r->disc);
 }
 
-/* The cells of an image that is in this state; size: of the scene's box. */
+/* Cell values of an image in coordinates of the scene; size: of the scene's box. */
 static void cells_back(struct simulation *simulation, const struct symmetry *s, const int size[2], struct result *r)
 {
   const int nx = simulation_scene(simulation)->domain.size[0], ny = simulation_scene(simulation)->domain.size[1];
@@ -197,7 +197,7 @@ static void discs_back(const struct simulation *simulation, const struct symmetr
   }
 }
 
-/* The largest difference of a result from what it should be, and where. */
+/* The largest difference of a result from its expected value, and its position. */
 struct difference {
   double size;
   const char *quantity;
@@ -208,7 +208,7 @@ struct difference {
 static void note(struct difference *largest, double difference, struct difference here)
 {
   here.size = fabs(difference);
-  if (!(here.size <= largest->size)) *largest = here; /* also what is not a number */
+  if (!(here.size <= largest->size)) *largest = here; /* also NAN */
 }
 
 static struct difference compare(const struct scene *scene, const struct result *a, const struct result *b)

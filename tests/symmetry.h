@@ -1,5 +1,5 @@
-/* The eight symmetries of a square, applied to a scene, to its initial flow and, backwards, to what comes of them. The
- * equations of motion have all of them, so that each image of a scene must have the image of its result. */
+/* The eight symmetries of a square, applied to a scene and its initial flow; the inverse is applied to the result.
+ * The equations of motion have all eight symmetries, so that the result of an image must be the image of the result. */
 #ifndef DELBM_TESTS_SYMMETRY_H
 #define DELBM_TESTS_SYMMETRY_H
 
@@ -17,20 +17,19 @@ enum { SYMMETRIES = 8 };
 /* The first is the identity. */
 extern const struct symmetry symmetries[SYMMETRIES];
 
-/* The scene turned or reflected: sides, their velocities, forces, discs. Its discs are its own (scene_clear). */
+/* The scene turned or reflected: sides, their velocities, forces, discs. The result owns its discs (scene_clear). */
 struct scene symmetry_image(const struct scene *scene, const struct symmetry *symmetry);
 
-/* A run to compare: where the flow starts from (NULL: from rest), the steps after which results are compared, and then
- * once more after one step. */
+/* A run to compare: initial flow (NULL: rest); results are compared after `steps` steps and after one more. */
 struct symmetric_run {
   flow_initial *initial;
   int64_t steps;
-  const char *what; /* named where results differ */
+  const char *what; /* name in messages */
 };
 
-/* Runs the scene and its images, and expects of each the scene's density, velocity, vorticity, occupation, and of discs
- * the place, angle, velocity, force and torque, within 1e-12 in double precision and 1e-5 in single precision. Forces and
- * torques are compared as what they change in one step in the velocity and in the rim's speed of the displaced fluid. */
+/* Runs the scene and its images, and expects of each the scene's density, velocity, vorticity, occupation, and of
+ * discs the place, angle, velocity, force and torque, within 1e-12 in double precision and 1e-5 in single precision.
+ * Forces and torques are compared as the changes, in one step, of velocity and rim speed of the displaced fluid. */
 void expect_symmetric(const struct scene *scene, const struct symmetric_run *run);
 
 #endif

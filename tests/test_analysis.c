@@ -1,4 +1,4 @@
-/* What is said about a run: histories made by hand, whose answers are known. */
+/* Analysis of constructed histories with known figures. */
 #include "analysis/analysis.h"
 #include "analysis/plateau.h"
 #include "scenes.h"
@@ -29,7 +29,7 @@ static double *at(struct history *h, size_t snapshot, size_t disc, enum history_
   return &h->values[(snapshot * h->discs + disc) * HISTORY_COLUMNS + column];
 }
 
-/* A table in a file of its own, removed once read. */
+/* Reads a table from a temporary file. */
 static bool read_text(struct history *h, const char *text, size_t discs)
 {
   char path[] = "/tmp/delbm-test-XXXXXX";
@@ -123,7 +123,7 @@ Test(plateau, of_an_approach_ends_at_its_terminal_speed)
   cr_assert_eq(p.kind, PLATEAU_FOUND);
   cr_expect_eq(p.first + p.count, COUNT);
   cr_expect_float_eq(fit_spread(speed + p.first, p.count).mean, 0.5, 0.005 * 0.5);
-  /* the same, braked at the end: what comes after is left out, to a third of the tolerance */
+  /* the same, braked at the end: the braked part is excluded, to a third of the tolerance */
   for (int k = 1700; k < COUNT; k++) speed[k] *= exp(-(k - 1700) / 50.0);
   const struct plateau braked = plateau_of(speed, COUNT, 100);
   cr_assert_eq(braked.kind, PLATEAU_FOUND);
@@ -159,7 +159,7 @@ Test(plateau, is_absent_where_the_speed_keeps_changing_or_the_way_is_short)
   cr_expect_eq(plateau_of(speed, 2, 0).kind, PLATEAU_SHORT, "two values are no stretch");
 }
 
-/* A disc of R = 10 that falls from y = 900 in a closed box with the given acceleration time. */
+/* A disc of R = 10 that falls from y = 900 in a closed box with acceleration time `time`. */
 static void analyse_fall(struct body *body, double terminal, double time)
 {
   struct scene scene = scene_box(400, 1000, 0.01, SIDES_CLOSED);
@@ -193,7 +193,7 @@ Test(body, that_keeps_accelerating_or_falls_too_short_has_no_terminal_speed)
   cr_expect(isnan(body.speed.mean) && strstr(body.note, "2.4 diameters"), "%s", body.note);
 }
 
-/* The disc of the case `vert`: gravity pulls it down, the fluid carries it up. */
+/* The disc of the case `vert`: it falls relative to the fluid, which rises faster. */
 Test(body, in_moving_fluid_has_the_speed_relative_to_it)
 {
   struct scene scene = scene_box(60, 180, 0.1, SIDES_PERIODIC);
@@ -212,7 +212,7 @@ Test(body, in_moving_fluid_has_the_speed_relative_to_it)
   cr_expect(isnan(body.drag) && strstr(body.note, "against its weight"), "%s", body.note);
   cr_assert(body_analyse(&body, &scene, no_mean, &h, &status), "%s", status.message);
   cr_expect(isnan(body.reynolds) && strstr(body.note, "unknown"), "%s", body.note);
-  /* with an inlet it is the inlet's velocity that counts, with walls across gravity rest */
+  /* relative to the inlet's velocity with an inlet, to rest with walls across gravity */
   scene.domain.side[SIDE_BOTTOM] = (struct side){SIDE_INLET, {0, 0.06}};
   scene.domain.side[SIDE_TOP].type = SIDE_OUTLET;
   for (size_t n = 0; n < h.snapshots; n++) *at(&h, n, 0, HISTORY_Y) = 90;
@@ -222,7 +222,7 @@ Test(body, in_moving_fluid_has_the_speed_relative_to_it)
   scene_clear(&scene);
 }
 
-/* Discs in fluid that a force drives through a periodic box: in slow flow F is K rho nu U each. */
+/* Discs in fluid that a force drives through a periodic box: in slow flow F = K rho nu U on each disc. */
 Test(body, of_held_discs_without_an_inlet_drag_follows_from_the_mean_velocity)
 {
   struct scene scene = scene_box(100, 100, 0.1, SIDES_PERIODIC);
@@ -254,7 +254,7 @@ Test(body, of_held_discs_without_an_inlet_drag_follows_from_the_mean_velocity)
   cr_expect(strstr(body.note, "not steady"), "%s", body.note);
   cr_assert(body_analyse(&body, &scene, no_mean, &h, &status), "%s", status.message);
   cr_expect(isnan(body.drag) && strstr(body.note, "unknown"), "%s", body.note);
-  /* driven with the fluid there is nothing to measure */
+  /* driven at the fluid's velocity: no relative motion, no analysis */
   for (int k = 0; k < 2; k++) {
     scene.particles.discs[k].motion = DISC_DRIVEN;
     for (int axis = 0; axis < 2; axis++) scene.particles.discs[k].velocity[axis] = mean[axis];
@@ -391,8 +391,8 @@ Test(pair, mirrored_left_to_right_has_the_same_events)
   scene_clear(&mirror);
 }
 
-/* A square grid of 20 x 20 discs in 400 x 800, all falling at 0.5 a step, that stop on the bottom row by row at spacing 5
- * (they may overlap): a bed of pi/4 below a suspension an eighth as dense, with a jump between. */
+/* A square grid of 20 x 20 discs in 400 x 800, all falling at 0.5 a step, that stop on the bottom row by row at
+ * spacing 5 (they may overlap): a bed of pi/4 below a suspension an eighth as dense, with a jump between. */
 static struct history grid_history(struct scene *scene)
 {
   *scene = scene_box(400, 800, 0.05, SIDES_CLOSED);
@@ -430,7 +430,7 @@ Test(settling, a_grid_that_falls_row_by_row_into_a_bed)
     cr_expect_float_eq(covered, 400 * M_PI * 25, 1e-6, "profiles hold every disc");
   }
   cr_expect_float_eq(s.band[0][0], 20 + 40 * 1.5, 1e-9);
-  /* the bed grows by 5 as the suspension above falls by 35; it grows by two slabs in all, which is how exact this is */
+  /* the bed grows by 5 while the suspension above falls by 35; it grows by two layers in all, hence the tolerance */
   cr_expect_float_eq(s.rise.slope, 0.5 / 7, 0.005, "%g", s.rise.slope);
   cr_expect_lt(s.sharpness, 2 * s.layer, "%g", s.sharpness);
   settling_destroy(&s);
@@ -438,7 +438,7 @@ Test(settling, a_grid_that_falls_row_by_row_into_a_bed)
   scene_clear(&scene);
 }
 
-Test(settling, mixing_is_one_where_chance_has_put_the_layers)
+Test(settling, mixing_is_one_for_layers_at_random)
 {
   struct scene scene;
   struct history h = grid_history(&scene);
@@ -456,9 +456,9 @@ Test(settling, mixing_is_one_where_chance_has_put_the_layers)
   scene_clear(&scene);
 }
 
-/* 500 discs of R = 5 in 400 x 1000, in layers of 20 cells that each disc lies wholly within. At snapshot n the bed has n
- * layers of 50 discs, and above it lie layers of 10, all in the order of the start: the interface falls by 80 a snapshot,
- * the sediment rises by 20. The last bed is denser than 50 a layer at its bottom and looser at its top. Snapshots 1 to
+/* 500 discs of R = 5 in 400 x 1000, in layers of 20 cells, each disc within one layer. At snapshot n the bed has n
+ * layers of 50 discs, below layers of 10, all in the initial order: the interface falls by 80 a snapshot, the
+ * sediment rises by 20. The last bed is denser than 50 a layer at its bottom and looser at its top. Snapshots 1 to
  * 6, in which the interface has fallen by 10 to 70 %, are 100 steps apart and the others 1000. */
 static struct history layered_history(struct scene *scene)
 {
@@ -480,7 +480,7 @@ static struct history layered_history(struct scene *scene)
   return h;
 }
 
-/* A figure of the report; NAN where it has none of that name. */
+/* A figure of the report; NAN if absent. */
 static double reported(const struct analysis *analysis, const char *name)
 {
   char *text = NULL, key[64];
@@ -527,7 +527,7 @@ Test(settling, of_exact_layers_has_exact_fronts_speeds_and_concentrations)
   cr_expect_float_eq(s->rise.r2, 1, 1e-12);
   cr_expect_float_eq(s->sharpness, 10, 1e-9, "half of the change between the middles of two layers");
   cr_expect(s->settled);
-  /* cut off at snapshot 6 it has an interface, and no sediment that could be named */
+  /* ended at snapshot 6 there is an interface, but no sediment at rest */
   settling_destroy(s);
   a.history.snapshots = 7;
   cr_assert(settling_create(s, &scene, &a.history, &status), "%s", status.message);
@@ -575,7 +575,7 @@ Test(settling, lambda_is_the_diagonal_at_first_then_what_moved_where)
   scene_clear(&scene);
 }
 
-Test(settling, lacey_s_index_is_zero_apart_and_exact_where_shares_are_even)
+Test(settling, lacey_s_index_is_zero_for_separate_and_exact_for_even_bands)
 {
   struct scene scene;
   struct history h = layered_history(&scene);

@@ -47,7 +47,7 @@ static size_t discs_of(const struct delbm_simulation *simulation, struct delbm_d
   return count;
 }
 
-/* Both have the same discs, bit for bit. */
+/* Expects the same discs, bit for bit. */
 static void expect_same(const char *what, const struct delbm_simulation *a, const struct delbm_simulation *b)
 {
   struct delbm_disc_state of_a[MOST_DISCS], of_b[MOST_DISCS];
@@ -64,7 +64,7 @@ static double *field(struct delbm_simulation *simulation, enum delbm_field which
   return values;
 }
 
-Test(api, steps_in_parts_are_those_of_delbm_run)
+Test(api, steps_in_parts_have_the_bits_of_delbm_run)
 {
   shell_enter();
   shell_write("case.yaml", crowd);
@@ -87,7 +87,7 @@ Test(api, steps_in_parts_are_those_of_delbm_run)
   shell_leave();
 }
 
-Test(api, a_scene_in_structs_is_that_of_its_text)
+Test(api, a_scene_in_structs_equals_its_text)
 {
   const struct delbm_disc discs[] = {{.radius = 6, .density = 1.2, .position = {30, 60}, .angle = 0.5},
                                      {.radius = 8, .position = {70, 40}, .spin = 0.003, .motion = DELBM_FIXED}};
@@ -132,7 +132,7 @@ Test(api, discs_written_back_as_they_were_change_nothing)
   delbm_close(b);
 }
 
-/* Opens a box of 60 x 60 cells with these discs, and returns what is said against them. */
+/* Opens a box of 60 x 60 cells with these discs, and returns the code and message. */
 static enum delbm_code opening(const char *discs, struct delbm_status *status)
 {
   char text[512];
@@ -271,7 +271,7 @@ Test(api, fluid_written_over_a_disc_takes_its_motion_in_proportion_to_the_weight
   delbm_close(s);
 }
 
-/* What a caller changes beside or under a disc: 0 a stream over it, 1 its place in a stream, 2 its velocity, 3 its spin. */
+/* Changes by a caller: 0 a stream over the disc, 1 its position in a stream, 2 its velocity, 3 its spin. */
 static void change(struct delbm_simulation *s, int what)
 {
   struct delbm_disc_state disc;
@@ -384,7 +384,7 @@ Test(api, the_force_on_a_disc_that_a_callback_speeds_up_is_the_same_along_x_and_
   cr_expect(force[0] < 0 && fabs(force[1] / force[0] - 1) < 1e-10, "%g, %g", force[0], force[1]);
 }
 
-Test(api, of_two_callbacks_the_one_that_stays_is_asked_on)
+Test(api, of_two_callbacks_the_remaining_callback_is_still_called)
 {
   struct delbm_simulation *s = opened("domain: {size: [60, 40]}\nfluid: {viscosity: 0.1}\n"
                                       "particles:\n  discs:\n"
@@ -454,7 +454,7 @@ Test(api, of_two_callbacks_of_which_one_goes_too_far_neither_changes_anything)
   delbm_close(s);
 }
 
-/* A run that has diverged can be read; all else fails for the reason for which the run has. */
+/* A diverged run can be read; other calls fail with the reason of the divergence. */
 Test(api, a_run_that_has_diverged_can_be_read_but_not_changed)
 {
   shell_enter();
@@ -509,7 +509,7 @@ Test(api, a_state_lost_in_loading_can_only_be_closed)
   shell_leave();
 }
 
-Test(api, a_checkpoint_gives_back_the_bits_and_another_case_refuses_it)
+Test(api, a_checkpoint_restores_the_bits_and_is_refused_by_another_case)
 {
   shell_enter();
   struct delbm_simulation *a = opened(crowd), *b = opened(crowd), *other;
@@ -551,14 +551,15 @@ Test(api, a_checkpoint_of_a_run_can_be_loaded)
   shell_leave();
 }
 
-/* What the calls that step, change and store a simulation lead to. */
+/* Result of the calls that step, change and store a simulation. */
 struct outcome {
   int wrong; /* calls that failed */
   struct delbm_disc_state discs[MOST_DISCS];
   double velocity[120 * 100];
 };
 
-/* Opens, steps, moves a disc, sets the fluid, saves at an odd step, loads into another simulation and goes on with that. */
+/* Opens, steps, moves a disc, sets the fluid, saves at an odd step, loads into another simulation and continues with
+ * it. */
 static void use_all_calls(const char *text, const char *path, struct outcome *outcome)
 {
   static const double rest[120 * 100];
@@ -619,7 +620,7 @@ Test(api, in_a_parallel_region_of_the_host_gives_the_same_bits_as_outside)
 {
   shell_enter();
   omp_set_num_threads(2);
-  for (int levels = 1; levels <= 2; levels++) { /* with 1 the regions of the library have one thread each */
+  for (int levels = 1; levels <= 2; levels++) { /* at level 1 the library's regions have one thread each */
     omp_set_max_active_levels(levels);
     expect_same_in_a_region(crowd);
     expect_same_in_a_region(through_outlet);
@@ -680,7 +681,8 @@ Test(installed, the_shared_library_shows_its_api_and_never_prints_ends_the_progr
                1);
 }
 
-/* The library as `meson install` puts it, found through pkg-config; the example compiled as its first lines say. */
+/* Compiles an example by the command in its first lines, with the library as installed by `meson install`, found by
+ * pkg-config. */
 static void run_example(const char *name)
 {
   if (SLOWNESS > 1) cr_skip_test("the library has sanitizers in it, the example none");

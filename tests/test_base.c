@@ -1,4 +1,4 @@
-/* What everything else stands on: words, memory, stores, the first failure of a team. */
+/* src/base: words, memory, stores, the first failure of a team. */
 #include "base/memory.h"
 #include "base/store.h"
 #include "base/team.h"
@@ -51,7 +51,7 @@ Test(memory, is_zero_and_aligned_even_where_it_was_used_before)
   }
 }
 
-Test(memory, that_grows_keeps_what_it_holds)
+Test(memory, that_grows_keeps_its_content)
 {
   struct status status;
   int *numbers = NULL;

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Something moves everywhere, and nothing is symmetric. */
+/* An initial flow in all cells, without symmetry. */
 static void stir(struct populations *p)
 {
   for (int y = 0; y < p->ny; y++)
@@ -107,7 +107,7 @@ Test(blocked, deeper_than_the_box_is_wide_gives_the_bits_of_single_steps)
     }
 }
 
-/* Velocity after some steps of a lid-driven cavity, whatever the plan. */
+/* Velocity after some steps of a lid-driven cavity. */
 static void cavity(int depth, enum precision precision, int64_t steps, double *ux)
 {
   struct scene scene = scene_box(160, 160, 0.05, SIDES_CLOSED);
@@ -138,7 +138,7 @@ Test(blocked, a_run_gives_the_same_bits_with_any_plan)
 
 enum low_box { LOW_CLOSED, LOW_PERIODIC, LOW_WITHOUT_FLUX, LOW_BOXES };
 
-/* Velocity after 100 steps of a low, wide box, of which each of several threads has few rows. */
+/* Velocity after 100 steps of a low, wide box: few rows for each thread. */
 static void low_box(enum low_box kind, int depth, int threads, double *ux)
 {
   const bool periodic = kind == LOW_PERIODIC;
@@ -233,8 +233,8 @@ Test(blocked, rows_that_no_disc_can_reach_go_ahead_and_give_the_same_bits)
   }
 }
 
-/* The paper's single disc, before its wake turns unsteady. */
-static void settle(enum precision precision, double *y, double *vy)
+/* The paper's single disc, before its wake becomes unsteady. */
+static void run_single_disc(enum precision precision, double *y, double *vy)
 {
   struct scene scene = scene_box(200, 400, 0.05, SIDES_CLOSED);
   scene.fluid.precision = precision;
@@ -254,8 +254,8 @@ static void settle(enum precision precision, double *y, double *vy)
 Test(single, precision_stays_within_1e_4_of_double_for_a_settling_disc)
 {
   double y[2], vy[2];
-  settle(PRECISION_DOUBLE, &y[0], &vy[0]);
-  settle(PRECISION_SINGLE, &y[1], &vy[1]);
+  run_single_disc(PRECISION_DOUBLE, &y[0], &vy[0]);
+  run_single_disc(PRECISION_SINGLE, &y[1], &vy[1]);
   cr_expect_lt(fabs(y[1] - y[0]) / (360 - y[0]), 1e-4, "fallen %g and %g", 360 - y[0], 360 - y[1]);
   cr_expect_lt(fabs(vy[1] / vy[0] - 1), 1e-4, "falls at %g and %g", vy[0], vy[1]);
 }

@@ -1,5 +1,4 @@
-/* What README.md and the cases name, run as a user would: every case of cases/, the lines of its `runs`, the figures, and the
- * case and the benchmarks that README.md shows. */
+/* The cases from outside: every case of cases/, its `runs`, the figures, and the case and benchmarks in README.md. */
 #include "shell.h"
 
 static void enter(void)
@@ -45,7 +44,7 @@ Test(cases, every_line_of_their_runs_is_a_valid_case)
                0);
 }
 
-/* On a copy of cases/, since the figures are put beside it. */
+/* On a copy of cases/, since the figures are written beside it. */
 Test(cases, figures_of_the_paper_are_reproduced_where_a_benchmark_has_them)
 {
   if (!has("gnuplot")) cr_skip_test("gnuplot is not installed");
@@ -56,7 +55,7 @@ Test(cases, figures_of_the_paper_are_reproduced_where_a_benchmark_has_them)
       0);
 }
 
-/* Shortened, so that numbers are not those of the paper: the tables, the pictures and the page are made all the same. */
+/* Short runs, whose numbers differ from the paper's: tests only that tables, pictures and the page are written. */
 Test(cases, figures_of_the_paper_are_drawn_from_short_runs_and_a_quick_benchmark)
 {
   if (!has("gnuplot")) cr_skip_test("gnuplot is not installed");
@@ -85,7 +84,7 @@ Test(cases, reports_of_benchmarks_are_plotted_by_their_scripts)
       0);
 }
 
-/* Writes the block of README.md that follows the line with this text, without its fences. */
+/* Writes the block of README.md after the line with this text, without its fences. */
 static int readme_block(const char *after, const char *path)
 {
   return shell("awk -v after='%s' 'index($0, after) {on = 1} /^```/ {if (inside) exit; inside = on; next} inside' "

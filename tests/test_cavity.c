@@ -6,7 +6,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Lowest velocity along x on the vertical line through the middle of a lid-driven cavity of n x n cells, over the lid's. */
+/* Lowest velocity along x on the vertical line through the middle of a lid-driven cavity of n x n cells, over the
+ * lid's. */
 static double cavity_minimum(int n, double reynolds, int64_t steps)
 {
   const double speed = 0.1;

@@ -26,9 +26,9 @@ static double between(gsl_rng *random, double low, double high)
   return low + (high - low) * gsl_rng_uniform(random);
 }
 
-Test(lens, areas_of_two_discs_are_those_of_the_reference)
+Test(lens, areas_of_two_discs_agree_with_the_reference)
 {
-  /* R_j (R_i = 1), delta* = delta (R_i + R_j)/(R_i R_j), area: shared/reference/lens_area.csv */
+  /* R_j (R_i = 1), delta* = delta (R_i + R_j)/(R_i R_j), area from an independent computation */
   static const double rows[][3] = {{1, 0.001, 1.4906561e-05}, {1, 0.2, 0.041846049}, {1, 1, 0.45331175},
                                    {1.5, 0.05, 0.0075734887}, {1.5, 1, 0.64858954},  {2, 0.01, 0.00083763311},
                                    {3, 0.1, 0.033318309},     {5, 0.5, 0.44127482},  {10, 0.001, 4.9274173e-05},
@@ -57,7 +57,7 @@ static struct overlapping random_overlap(gsl_rng *random, double clear)
   return (struct overlapping){ra, rb, between(random, fabs(ra - rb) + clear, ra + rb - clear)};
 }
 
-Test(lens, area_is_that_of_the_textbook_formula_where_that_is_accurate)
+Test(lens, area_agrees_with_the_textbook_formula_where_it_is_accurate)
 {
   const unsigned long seed = 1;
   gsl_rng *random = random_from(seed);
@@ -75,7 +75,8 @@ Test(lens, area_is_that_of_the_textbook_formula_where_that_is_accurate)
   gsl_rng_free(random);
 }
 
-/* The limit's relative error is of the order of the overlap over the lesser radius; nothing is to be lost beyond. */
+/* The relative error of the limit is of the order of the overlap over the smaller radius; cancellation would exceed
+ * it. */
 Test(lens, area_tends_to_the_small_overlap_limit_without_cancellation)
 {
   static const double radii[] = {1, 1.5, 3, 10, 20};
@@ -120,7 +121,7 @@ Test(lens, chord_is_the_rate_at_which_the_area_grows)
   gsl_rng_free(random);
 }
 
-/* Where the chord is a diameter, its half-length does not tell on which side the centre lies. */
+/* If the chord is a diameter, its half-length does not determine the side of the centre. */
 Test(lens, area_grows_smoothly_where_the_chord_is_a_diameter)
 {
   const double big = 10, small = 3, d = sqrt(big * big - small * small);
@@ -152,7 +153,7 @@ Test(lens, contained_discs_overlap_wholly_and_distant_ones_not_at_all)
   cr_expect_eq(lens_of_wall(5, 6).area, 0);
 }
 
-/* (11): alpha is what the dimensionless area over delta*^1.5 tends to. */
+/* (11): alpha is the limit of the dimensionless area over delta*^1.5. */
 Test(lens, dimensionless_area_tends_to_the_alpha_of_the_radii)
 {
   for (double beta = 1; beta < 20; beta *= 1.3) {
@@ -189,7 +190,7 @@ static double mean_cells_area(double overlap, unsigned long seed)
   return sum / PLACES;
 }
 
-Test(overlap, areas_by_cells_are_on_average_those_measured_for_the_paper_s_rule)
+Test(overlap, areas_by_cells_have_the_mean_measured_for_the_paper_s_rule)
 {
   static const double measured[][2] = {{0.2, 0.57}, {0.5, 1.82}, {1, 4.75}}; /* R = 10, means over many places */
   for (unsigned long k = 0; k < 3; k++) {
@@ -280,7 +281,7 @@ static double spring_acceleration(const struct contact_law *law, double mass, co
   return -(clamped ? force_of(law, state[0], state[1], eta) : law->k * state[0] + eta * state[1]) / mass;
 }
 
-/* Restitution of an impact with that spring by fourth-order Runge-Kutta steps, until the overlap ends. */
+/* Restitution of an impact with this spring by fourth-order Runge-Kutta steps, until the overlap ends. */
 static double spring_restitution(const struct contact_law *law, double mass, bool clamped)
 {
   const double h = 2e-5 / sqrt(law->k / mass);
@@ -303,7 +304,7 @@ static double spring_restitution(const struct contact_law *law, double mass, boo
 
 Test(law, a_linear_spring_has_the_restitution_of_the_reference)
 {
-  /* zeta, restitution if the contact ends at no overlap, and at no force: shared/reference/restitution.csv */
+  /* zeta, restitution if the contact ends at no overlap, and at no force: from an independent computation */
   static const double rows[][3] = {{0.01, 0.969071, 0.969265},
                                    {0.1, 0.729248, 0.744079},
                                    {0.34, 0.321163, 0.412731},
@@ -316,16 +317,16 @@ Test(law, a_linear_spring_has_the_restitution_of_the_reference)
   }
 }
 
-/* Two discs head on, or one and a wall, so heavy that the fluid does not matter. The contact starts a whole or a broken
- * number of steps after the start, by the gap. */
+/* Head-on impact of two discs, or of a disc and a wall, so heavy that the fluid is negligible. The gap determines
+ * the fraction of a step at which contact begins. */
 struct impact {
   bool wall;
   double radius[2];
   double direction[2]; /* from the first disc to the second */
   double speed, gap;
-  double overlap; /* stiffness: what an undamped impact would reach, in cells */
+  double overlap; /* largest overlap of an undamped impact, cells: determines the stiffness */
   double damping;
-  double place[2]; /* of the whole, from where its middle would be: of consequence to areas by cells */
+  double place[2]; /* offset of both discs on the grid: changes areas by cells */
   enum contact_area area;
   int substeps;
 };
@@ -334,7 +335,7 @@ struct outcome {
   double restitution;
   double most_overlap;
   double imbalance; /* of the impulses on the two, relative to one of them */
-  double drift;     /* of the momentum of fluid and discs, relative to that of a disc */
+  double drift;     /* of the momentum of fluid and discs, relative to a disc's momentum */
   int substeps;
 };
 
@@ -365,7 +366,7 @@ static double work(const struct impact *i, double overlap)
 static struct scene impact_scene(const struct impact *i)
 {
   struct scene scene = scene_box(BOX, BOX, 0.01, i->wall ? SIDES_CLOSED : SIDES_PERIODIC);
-  scene.coupling.form = FORM_UNIFIED; /* bears deeper overlaps, in which fluid is trapped */
+  scene.coupling.form = FORM_UNIFIED; /* stable at deeper overlaps, in which fluid is trapped */
   scene.contact.damping = i->damping;
   scene.contact.area = i->area;
   scene.contact.substeps = i->substeps;
@@ -382,13 +383,13 @@ static struct scene impact_scene(const struct impact *i)
   return scene;
 }
 
-/* Overlap, and the speed of approach. */
-static double overlap_of(const struct impact *i, const struct discs *d, double *closing)
+/* Overlap; *approach_speed is the speed of approach. */
+static double overlap_of(const struct impact *i, const struct discs *d, double *approach_speed)
 {
   const double *n = i->direction;
-  *closing = d->vx[0] * n[0] + d->vy[0] * n[1];
+  *approach_speed = d->vx[0] * n[0] + d->vy[0] * n[1];
   if (i->wall) return (d->x[0] - BOX / 2.0) * n[0] + (d->y[0] - BOX / 2.0) * n[1] + i->radius[0] - BOX / 2.0;
-  *closing -= d->vx[1] * n[0] + d->vy[1] * n[1];
+  *approach_speed -= d->vx[1] * n[0] + d->vy[1] * n[1];
   return i->radius[0] + i->radius[1] - hypot(d->x[1] - d->x[0], d->y[1] - d->y[0]);
 }
 
@@ -411,13 +412,13 @@ static struct outcome follow(const struct impact *i)
   cr_assert(simulation_create(&simulation, &scene, &status), "%s", status.message);
   const struct discs *d = simulation_discs(simulation);
   for (bool met = false; isnan(outcome.restitution) && simulation_step(simulation) < 2000;) {
-    double closing;
+    double approach_speed;
     cr_assert(simulation_advance(simulation, 1, &status), "overlap %g, speed %g: %s", i->overlap, i->speed,
               status.message);
-    outcome.most_overlap = fmax(outcome.most_overlap, overlap_of(i, d, &closing));
+    outcome.most_overlap = fmax(outcome.most_overlap, overlap_of(i, d, &approach_speed));
     outcome.imbalance = fmax(outcome.imbalance, imbalance_of(d));
     const bool touching = d->contact_fx[0] != 0 || d->contact_fy[0] != 0;
-    if (met && !touching) outcome.restitution = -closing / i->speed;
+    if (met && !touching) outcome.restitution = -approach_speed / i->speed;
     met |= touching;
   }
   simulation_report(simulation, &report);
@@ -446,8 +447,8 @@ static void check_impact(const struct impact *i)
             o.drift);
 }
 
-/* Stiffness over eight decades: the overlap of an undamped impact goes as its power -0.4. Deeper ones than where this
- * starts drive the trapped fluid to the speed of sound. */
+/* Stiffness over eight decades: the overlap of an undamped impact is proportional to stiffness^(-0.4). At deeper
+ * overlaps than the first the trapped fluid reaches the speed of sound. */
 static void check_impacts(struct impact impact, double speed, double damping)
 {
   impact.damping = damping;
@@ -493,7 +494,7 @@ Test(impact, with_damping_kinetic_energy_never_grows)
   }
 }
 
-/* The largest speed of parting over that of approach, however the contact may come and go. */
+/* The largest speed of separation over the speed of approach, for contacts that may end and begin again. */
 static double fastest_parting(const struct impact *i, int64_t steps)
 {
   struct scene scene = impact_scene(i);
@@ -501,10 +502,10 @@ static double fastest_parting(const struct impact *i, int64_t steps)
   struct simulation *simulation = start(&scene);
   double fastest = -i->speed;
   while (simulation_step(simulation) < steps) {
-    double closing;
+    double approach_speed;
     advance(simulation, 1);
-    overlap_of(i, simulation_discs(simulation), &closing);
-    fastest = fmax(fastest, -closing);
+    overlap_of(i, simulation_discs(simulation), &approach_speed);
+    fastest = fmax(fastest, -approach_speed);
   }
   simulation_destroy(simulation);
   scene_clear(&scene);
@@ -534,7 +535,7 @@ static void check_return(enum contact_area area, double damping, double most)
     }
 }
 
-Test(impact, gives_back_no_more_speed_than_it_took_whatever_the_area_and_the_sub_steps)
+Test(impact, returns_no_more_speed_than_before_for_any_area_and_number_of_sub_steps)
 {
   check_return(AREA_LENS, 0, 1.001);
   check_return(AREA_CELLS, 0, 1.001);
@@ -554,7 +555,7 @@ Test(impact, by_cells_takes_one_sub_step_however_stiff)
   cr_expect_eq(follow(&impact).substeps, 1);
 }
 
-/* Two discs of radius 5 that meet head on in a fluid that matters. */
+/* Head-on impact of two discs of radius 5 in a fluid that is not negligible. */
 static struct scene wet_scene(double density, double stiffness, double gap)
 {
   struct scene scene = scene_box(64, 40, 0.01, SIDES_PERIODIC);
@@ -591,7 +592,7 @@ static void check_wet_impact(double density, double stiffness, double gap)
   cr_assert(simulation_create(&simulation, &scene, &status), "%s", status.message);
   const struct discs *d = simulation_discs(simulation);
   do {
-    push = approach - (d->vx[0] - d->vx[1]); /* of the fluid between them, in a step */
+    push = approach - (d->vx[0] - d->vx[1]); /* impulse of the fluid between them in a step */
     approach = d->vx[0] - d->vx[1];
     energy = energy_of(simulation);
     advance(simulation, 1);
@@ -601,7 +602,7 @@ static void check_wet_impact(double density, double stiffness, double gap)
     most = fmax(most, energy_of(simulation));
     advance(simulation, 1);
   }
-  /* the fluid pushes within the step, too; and a sub-step may add what check_impact allows */
+  /* plus the impulse of the fluid, and the surplus of a sub-step (check_impact) */
   cr_expect(fastest > 0 && fastest <= 1.003 * approach + push,
             "density %g, stiffness %g, gap %g: part at %g, met at %g, fluid gives %g", density, stiffness, gap, fastest,
             approach, push);
@@ -611,7 +612,7 @@ static void check_wet_impact(double density, double stiffness, double gap)
   scene_clear(&scene);
 }
 
-/* The fluid inside must not lend a contact energy that is shorter than a step. */
+/* A contact shorter than a step must not gain energy from the fluid inside the discs. */
 Test(impact, in_fluid_without_damping_no_energy_is_gained_at_any_stiffness)
 {
   static const double densities[] = {2, 5, 20};
@@ -620,7 +621,7 @@ Test(impact, in_fluid_without_damping_no_energy_is_gained_at_any_stiffness)
       for (int phase = 0; phase < 4; phase++) check_wet_impact(densities[k], stiffness, 3 + 0.02 * phase);
 }
 
-/* A stack of two on the bottom of a box: the overlaps, and what presses on the bottom over the weight. */
+/* A stack of two discs on the bottom of a box: the overlaps, and the force on the bottom over the weight. */
 struct rest {
   double overlap[2], weight;
 };
@@ -658,7 +659,7 @@ static void check_rest(double stiffness, enum contact_area area, int substeps, d
   scene_clear(&scene);
 }
 
-Test(rest, contacts_bear_the_whole_weight_of_a_stack_and_do_not_give_way)
+Test(rest, contacts_support_the_whole_weight_of_a_stack_at_rest)
 {
   for (double stiffness = 25; stiffness <= 250000; stiffness *= 100) check_rest(stiffness, AREA_LENS, 0, 1e-6);
   check_rest(25, AREA_CELLS, 0, 1e-6);
@@ -702,7 +703,7 @@ static bool pass(struct contact_states *memory, uint32_t discs, char *bytes, siz
   return passed;
 }
 
-/* A disc that rises against the top side, or a disc held below it. */
+/* A disc that rises against the top side, or a fixed disc below it. */
 static void expect_rest(double density, double viscosity, bool held)
 {
   struct scene scene = scene_box(24, 30, viscosity, SIDES_CLOSED);
@@ -717,12 +718,12 @@ static void expect_rest(double density, double viscosity, bool held)
   const struct discs *d = simulation_discs(simulation);
   cr_expect(ran, "density %g, viscosity %g: %s", density, viscosity, ran ? "" : status.message);
   cr_expect_lt(hypot(d->vx[0], d->vy[0]), held ? 0.01 : 1e-4, "density %g, viscosity %g: at (%g, %g)", density,
-               viscosity, d->x[0], d->y[0]); /* from a disc it may roll off */
+               viscosity, d->x[0], d->y[0]); /* a disc on a disc may roll off */
   simulation_destroy(simulation);
   scene_clear(&scene);
 }
 
-/* Inertia within a step that is negative in some combination of motions made them rock until they diverged. */
+/* If the inertia within a step is negative for a combination of motions, the discs oscillate until they diverge. */
 Test(rest, light_discs_against_a_wall_or_a_disc_stay_there_at_any_viscosity)
 {
   static const double densities[] = {0.01, 0.1, 0.3}, viscosities[] = {0.3, 1, 3, 10};
@@ -731,7 +732,7 @@ Test(rest, light_discs_against_a_wall_or_a_disc_stay_there_at_any_viscosity)
       for (int held = 0; held < 2; held++) expect_rest(densities[d], viscosities[v], held);
 }
 
-/* As deep as a case may start it: in the bottom side, or one disc in another. */
+/* The deepest overlap allowed at the start: with the bottom side, or of two discs. */
 static void expect_to_leave(double radius, double density, double viscosity, bool pair)
 {
   const int size = (int)(4 * radius) + 8;
@@ -762,7 +763,7 @@ Test(rest, discs_that_start_in_a_wall_or_in_each_other_come_out_without_divergen
         for (int k = 0; k < 2; k++) expect_to_leave(k ? 10 : 5, densities[d], viscosities[v], pair);
 }
 
-/* Overlaps of all pairs and sides one by one. */
+/* Number of overlaps by a loop over all pairs and sides; *depth: the largest. */
 static size_t overlaps_one_by_one(const struct scene *scene, double *depth)
 {
   const int *size = scene->domain.size;
@@ -842,7 +843,7 @@ Test(states, come_back_whole_and_are_refused_in_words_where_a_run_cannot_have_le
   } spoilt[] = {{0, sizeof many, &many},
                 {HEAD, sizeof far, &far},
                 {HEAD + 4, sizeof far, &far},
-                {HEAD, ENTRY, bytes + HEAD + ENTRY}, /* twice the same */
+                {HEAD, ENTRY, bytes + HEAD + ENTRY}, /* a duplicate */
                 {HEAD + 8, sizeof(double), &wrong[0]},
                 {HEAD + 8, sizeof(double), &wrong[2]},
                 {HEAD + 16, sizeof(double), &wrong[1]},
@@ -860,7 +861,7 @@ Test(states, come_back_whole_and_are_refused_in_words_where_a_run_cannot_have_le
   gsl_rng_free(random);
 }
 
-Test(contacts, too_stiff_to_be_followed_are_refused_by_any_number_of_threads)
+Test(contacts, too_stiff_to_be_resolved_are_refused_by_any_number_of_threads)
 {
   struct scene pair = scene_box(64, 48, 0.05, SIDES_CLOSED);
   scene_add_disc(&pair, 8, 1.2, 30, 24);
@@ -917,7 +918,7 @@ static void expect_parting(bool wall, double stiffness, bool later)
   d->x[0] = x;
   if (!wall) d->x[1] = x + 2 * radius - overlap;
   if (later) cr_assert(simulation_changed(simulation, &status), "%s", status.message);
-  /* of the small overlap's law, alpha k c delta^1.5, over the overlap; each disc of a pair takes half */
+  /* force alpha k c delta^1.5 at small overlap; each disc of a pair moves by half of the overlap */
   const double c = lens_small(radius, wall ? INFINITY : radius), force = 0.3 * stiffness * c;
   const double energy = 0.4 * force * pow(overlap, 2.5), most = sqrt(2 * (wall ? energy : energy / 2) / mass);
   double fastest = 0;
@@ -931,7 +932,7 @@ static void expect_parting(bool wall, double stiffness, bool later)
   scene_clear(&scene);
 }
 
-Test(contacts, of_discs_that_are_put_into_each_other_push_them_apart_with_the_energy_they_hold)
+Test(contacts, of_discs_placed_with_an_overlap_separate_them_with_the_stored_energy)
 {
   for (int k = 0; k < 8; k++) expect_parting(k & 1, k & 2 ? 20 : 2, k & 4);
 }

@@ -1,4 +1,4 @@
-/* Fluid and discs together: what is conserved, what is stable, how discs start and settle. */
+/* Fluid and discs: conservation, stability, start and settling of discs. */
 #include "drive.h"
 #include "scenes.h"
 #include "sim/simulation.h"
@@ -17,7 +17,7 @@ static struct simulation_report report_of(struct simulation *simulation)
   return report;
 }
 
-/* Discs on a square grid, a random velocity each. */
+/* Discs on a square grid with random velocities. */
 static struct scene moving_discs(int n, double spacing, double radius, double density, double speed, enum sides sides)
 {
   const int size = (int)lround(n * spacing);
@@ -47,7 +47,7 @@ Test(conservation, mass_is_constant_in_a_closed_box_with_moving_discs)
   scene_clear(&scene);
 }
 
-/* Cells with more than two owners, by their number in the bands' lists: each owner of a shared cell is listed once. */
+/* Cells with more than two owners, counted in the bands' lists: each owner of a cell is listed once. */
 static size_t shares_beyond_two(const struct occupation *o)
 {
   size_t beyond = 0;
@@ -69,11 +69,11 @@ static void expect_momentum_kept(enum coupling_form form, enum contact_area area
   scene.contact.area = area;
   scene.contact.stiffness = 0.02;
   for (size_t i = 0; i < scene.particles.count; i++) scene.particles.discs[i].velocity[0] += 0.04; /* they all drift */
-  /* three more, pressed into one place */
+  /* three more at one place */
   scene_add_disc(&scene, 6, 2, 50, 50)->velocity[0] = 0.05;
   scene_add_disc(&scene, 6, 2, 58, 50)->velocity[0] = -0.05;
   scene_add_disc(&scene, 6, 2, 54, 56)->velocity[1] = -0.05;
-  double scale = 0; /* of the momentum that is exchanged */
+  double scale = 0; /* of the exchanged momentum */
   for (size_t k = 0; k < scene.particles.count; k++) {
     const struct disc_spec *disc = &scene.particles.discs[k];
     scale += disc->density * M_PI * disc->radius * disc->radius * hypot(disc->velocity[0], disc->velocity[1]);
@@ -177,7 +177,7 @@ Test(reproducibility, any_number_of_threads_gives_the_same_bits)
   }
 }
 
-/* Both searches find the pairs that overlap, and lens areas do not ask which. */
+/* Both searches find all pairs that overlap, and lens areas are independent of the search. */
 Test(reproducibility, linked_cells_and_the_grid_give_the_same_run)
 {
   for (int sides = 0; sides < 2; sides++) {
@@ -216,8 +216,8 @@ Test(reproducibility, results_do_not_depend_on_how_steps_are_grouped)
   scene_clear(&scene);
 }
 
-/* Added mass of a cylinder: (m + m_f) a = (m - m_f) g, once sound has carried the flow around the disc and before
- * viscosity has spread: what remains is its history force, 4 % at the smallest ratio. */
+/* Added mass of a cylinder: (m + m_f) a = (m - m_f) g, once sound has crossed the flow around the disc and before
+ * the boundary layer has grown: the rest is the history force, 4 % at the smallest ratio. */
 Test(motion, a_released_disc_starts_with_the_added_mass_of_a_cylinder)
 {
   static const double ratios[] = {0.2, 0.5, 2, 10};
@@ -264,7 +264,7 @@ Test(motion, a_settling_crowd_in_a_closed_box_sinks_steadily_without_ringing)
   scene_clear(&scene);
 }
 
-/* Two discs that share cells from the start, one of them moving; mirrored in x. */
+/* Two discs with cells in common from the start, one of them moving; mirrored in x. */
 static struct simulation *shared_from_the_start(struct scene *scene, enum coupling_form form, double force, bool mirror)
 {
   *scene = scene_box(40, 40, 0.1, SIDES_PERIODIC);
@@ -343,8 +343,8 @@ static double slip_inside(struct simulation *simulation, int nx, int ny)
   return slip;
 }
 
-/* Fluid inside must not be driven by the rim, as it is in owen's form until the run diverges, at this spin by step 1300. */
-Test(stability, a_disc_held_and_spinning_at_mach_a_quarter_turns_its_fluid_with_it)
+/* The rim must not drive oscillations of the fluid inside: owen's form diverges at this spin by step 1300. */
+Test(stability, a_fixed_disc_spinning_at_mach_a_quarter_turns_its_fluid_with_it)
 {
   static const double viscosities[] = {0.005, 0.05, 1.0 / 6};
   const double spin = 0.015;
@@ -363,7 +363,7 @@ Test(stability, a_disc_held_and_spinning_at_mach_a_quarter_turns_its_fluid_with_
 }
 
 /* Reynolds number 460 at Mach 0.1, where the rates that are best for slow flow diverge by step 450. */
-Test(stability, fast_fluid_at_small_viscosity_is_held_by_the_default_rates)
+Test(stability, fast_fluid_at_small_viscosity_is_stable_with_the_default_rates)
 {
   struct scene scene = scene_box(160, 80, 0.002, SIDES_PERIODIC);
   struct disc_spec *disc = scene_add_disc(&scene, 8, 1, 80, 40.2);
@@ -375,7 +375,7 @@ Test(stability, fast_fluid_at_small_viscosity_is_held_by_the_default_rates)
   scene_clear(&scene);
 }
 
-/* The force that keeps the flux at zero must not overshoot where what it acts on is lighter than fluid. */
+/* The uniform force of zero flux must not overshoot where discs are lighter than fluid. */
 Test(stability, light_discs_packed_in_a_closed_box_rise)
 {
   struct scene scene = scene_box(100, 80, 0.05, SIDES_CLOSED);
@@ -393,7 +393,7 @@ Test(stability, light_discs_packed_in_a_closed_box_rise)
   scene_clear(&scene);
 }
 
-/* What is given back to light discs late must not feed their oscillations: once, these moved at Mach 0.1 and more. */
+/* The deferred momentum of light discs must not drive oscillations: with too short a delay they reach Mach 0.1. */
 Test(stability, a_crowd_of_small_light_discs_at_small_viscosity_rises_quietly)
 {
   struct scene scene = scene_box(80, 72, 0.005, SIDES_CLOSED);
@@ -410,7 +410,7 @@ Test(stability, a_crowd_of_small_light_discs_at_small_viscosity_rises_quietly)
   scene_clear(&scene);
 }
 
-/* Undamped inside, it moved against them by 0.03. */
+/* Without damping inside discs the fluid there moves against them by 0.03. */
 Test(stability, fluid_inside_the_discs_of_a_pile_moves_with_them)
 {
   struct scene scene = scene_box(100, 100, 0.005, SIDES_CLOSED);
@@ -425,8 +425,8 @@ Test(stability, fluid_inside_the_discs_of_a_pile_moves_with_them)
   scene_clear(&scene);
 }
 
-/* The largest Mach number in 3000 steps of a disc of R = 3 in the way of a wall or of another disc, which passes it at this
- * Mach number. */
+/* The largest Mach number in 3000 steps with a disc of R = 3 overlapped by a wall or another disc that moves at Mach
+ * `mach`. */
 static double fastest_between(bool wall, double mach, double overlap)
 {
   struct scene scene = scene_box(90, 60, 0.007, SIDES_CLOSED);
@@ -447,7 +447,7 @@ static double fastest_between(bool wall, double mach, double overlap)
   return report.max_mach;
 }
 
-/* They go on driving the fluid that is caught between them: once to Mach 0.6, in 50 steps. */
+/* They drive the trapped fluid, without damping to Mach 0.6 in 50 steps. */
 Test(stability, surfaces_that_pass_each_other_drive_fluid_between_them_hardly_faster_than_themselves)
 {
   static const double overlaps[] = {-0.1, 0.2, 0.5, 0.9};
@@ -459,8 +459,8 @@ Test(stability, surfaces_that_pass_each_other_drive_fluid_between_them_hardly_fa
     }
 }
 
-/* In fluid kept without net flux, as gravity in a closed box is by default. */
-Test(stability, a_disc_on_the_ground_comes_to_rest_and_the_contact_carries_its_weight)
+/* With zero flux, the default in a closed box with gravity. */
+Test(stability, a_disc_on_the_ground_comes_to_rest_and_the_contact_supports_its_weight)
 {
   struct scene scene = scene_box(60, 60, 0.05, SIDES_CLOSED);
   scene_add_disc(&scene, 10, 1.01, 30.3, 11);
@@ -508,7 +508,7 @@ Test(stability, fluid_squeezed_out_of_a_gap_too_fast_is_named_as_that)
   scene_clear(&scene);
 }
 
-Test(stability, discs_that_close_an_outlet_are_named_as_what_makes_the_pressure_rise)
+Test(stability, discs_that_close_an_outlet_are_named_as_the_cause_of_the_pressure)
 {
   struct scene scene = scene_box(60, 24, 0.05, SIDES_CLOSED);
   struct simulation *simulation;
@@ -540,7 +540,7 @@ Test(stability, fluid_of_negative_density_inside_a_disc_is_called_that)
   scene_clear(&scene);
 }
 
-Test(stability, fluid_too_fast_is_found_within_the_interval_of_looks)
+Test(stability, fluid_too_fast_is_found_within_the_interval_of_checks)
 {
   struct scene scene = scene_box(32, 32, 0.05, SIDES_PERIODIC);
   scene.fluid.force[0] = 1e-3;
@@ -555,8 +555,8 @@ Test(stability, fluid_too_fast_is_found_within_the_interval_of_looks)
   scene_clear(&scene);
 }
 
-/* Discs that settle in a regular square array, one in a periodic cell, in water without net flux: their net weight is the
- * drag K mu U of the array, K = 51.527 at solid fraction 0.2 (Sangani & Acrivos 1982). */
+/* Sedimentation of a regular square array, one in a periodic cell, in water without net flux: their net weight is
+ * the drag K mu U of the array, K = 51.527 at solid fraction 0.2 (Sangani & Acrivos 1982). */
 Test(exchange, a_regular_array_settles_at_the_speed_that_its_drag_allows)
 {
   static const struct {
@@ -579,7 +579,7 @@ Test(exchange, a_regular_array_settles_at_the_speed_that_its_drag_allows)
     scene_add_disc(&scene, radius, 1.01, 10.3, 10.1);
     cr_assert(simulation_create(&simulation, &scene, &status), "%s", status.message);
     cr_assert(simulation_advance(simulation, 6000, &status), "%s", status.message);
-    double before = simulation_discs(simulation)->y[0], fallen = 0; /* over cells, whose grid it feels */
+    double before = simulation_discs(simulation)->y[0], fallen = 0; /* averaged over the cells crossed */
     for (int n = 0; n < 6000; n += 100) {
       cr_assert(simulation_advance(simulation, 100, &status), "%s", status.message);
       const double y = simulation_discs(simulation)->y[0];
@@ -594,7 +594,7 @@ Test(exchange, a_regular_array_settles_at_the_speed_that_its_drag_allows)
   }
 }
 
-/* Discs too light for their inertia to be that of the solid alone: part of it is withheld, and returned with a delay. */
+/* Discs so light that they have virtual mass and deferred momentum. */
 static struct scene light_discs(void)
 {
   struct scene scene = moving_discs(3, 20, 6, 1, 0.03, SIDES_PERIODIC);
@@ -637,7 +637,7 @@ Test(conservation, momentum_is_constant_with_very_light_discs)
   scene_clear(&scene);
 }
 
-/* Angular momentum of all fluid about the middle of a box of this size; collision and streaming keep it. */
+/* Angular momentum of all fluid about the middle of a box of this size; conserved by collision and streaming. */
 static double angular_momentum(struct simulation *simulation, int size)
 {
   const size_t cells = (size_t)size * (size_t)size;
@@ -651,8 +651,8 @@ static double angular_momentum(struct simulation *simulation, int size)
   return sum;
 }
 
-/* A free disc that spins in the middle of a box so large that the flow has not reached its sides: what the disc loses in
- * angular momentum the fluid gains. The averaged solve lags by half a step's torque at either end. */
+/* A free disc that spins in the middle of a box so large that the flow has not reached its sides: the fluid gains
+ * the angular momentum that the disc loses. The averaged solve lags by half a step's torque at start and end. */
 static void expect_angular_momentum_kept(enum coupling_solve solve, double spin)
 {
   enum { SIZE = 80, STEPS = 50 };
@@ -690,7 +690,7 @@ Test(conservation, a_disc_that_spins_loses_the_angular_momentum_that_the_fluid_g
   }
 }
 
-/* 0.6 c_s = 0.3464 cells/step, of the rim's fastest point. */
+/* 0.6 c_s = 0.3464 cells/step, at the fastest point of the rim. */
 Test(stability, a_disc_whose_rim_passes_mach_0_6_is_refused_whichever_way_it_spins)
 {
   static const struct {
@@ -781,7 +781,7 @@ Test(stability, a_cell_that_is_not_finite_or_has_no_mass_is_named_wherever_it_is
     }
 }
 
-Test(stability, a_free_disc_that_its_contact_cannot_hold_in_the_box_is_named_with_the_key_to_change)
+Test(stability, a_free_disc_pushed_out_of_the_box_is_named_with_the_key_to_change)
 {
   static const double gravity[SIDE_COUNT][2] = {{-3e-4, 0}, {3e-4, 0}, {0, -3e-4}, {0, 3e-4}};
   for (int side = 0; side < SIDE_COUNT; side++) {

@@ -1,7 +1,7 @@
-/* Every call that can fail does: allocations, threads and files, one after the other, in a small run with discs,
- * contacts, frames and checkpoints. Whatever fails, the program ends by itself with the exit code of its kind and says
- * why; what it leaves can be resumed, to the same bytes; and if it calls itself done it has done all. With sanitizers
- * (`tests/harden asan`) nothing leaks either. By default a sample of the calls; DELBM_EVERY_CALL=1 takes each. */
+/* Every call that can fail fails in turn (allocations, threads, files) in a small run with discs, contacts, frames
+ * and checkpoints. The program must end by itself with the exit code of the failure and its reason; its files can be
+ * resumed, to the same bytes; and a run that reports success is complete. With sanitizers (`tests/harden asan`)
+ * nothing leaks. By default a sample of the calls; DELBM_EVERY_CALL=1 tries all. */
 #include "shell.h"
 
 static const char *const small = "domain: {size: [40, 30], left: periodic, right: periodic}\n"
@@ -23,8 +23,7 @@ static const char *const small = "domain: {size: [40, 30], left: periodic, right
                                  "output: {every: 2, checkpoint: {every: 3}}\n";
 #endif
 
-/* What is made to fail, of which command, and how its end is judged: by a script that returns 0, in which `code` is the
- * exit code. */
+/* Kind of failure, command, and judge: a script, with the exit code in `code`, that returns 0 if all is right. */
 struct trial {
   const char *kind, *command, *before, *judge;
   int stride; /* between the calls that are tried */
@@ -79,7 +78,7 @@ static void enter(void)
   shell_enter();
   setenv("DELBM_FAULTY", DELBM_FAULTY, 1);
   setenv("OMP_NUM_THREADS", "1", 1);
-  setenv("GOMP_SPINCOUNT", "500", 1); /* else the program begins twice, and the first time nothing matters */
+  setenv("GOMP_SPINCOUNT", "500", 1); /* otherwise the program executes itself again to set it */
   shell_write("small.yaml", small);
   cr_assert_eq(shell("$DELBM run small.yaml --quiet --out whole >/dev/null && "
                      "$DELBM run small.yaml --quiet --set run.steps=5 --out part >/dev/null"),
@@ -124,7 +123,7 @@ Test(failures, of_any_thread_end_a_run_with_words)
             "");
 }
 
-/* Seen from a host of the library: host_faulty.c. */
+/* In a host of the library: host_faulty.c. */
 Test(failures, of_any_allocation_leave_a_simulation_of_the_library_as_it_was)
 {
   setenv("OMP_NUM_THREADS", "2", 1);
@@ -137,7 +136,7 @@ Test(failures, of_any_file_leave_a_simulation_of_the_library_as_it_was)
 }
 
 #ifdef DELBM_HDF5
-/* The case with snapshots of the flow; a whole run of it, and a part from which to go on. */
+/* The case with snapshots of the flow; a whole run, and an interrupted run to resume. */
 static const char *const with_fields = " --set output.fields.every=2";
 
 static void enter_with_fields(void)
@@ -158,7 +157,7 @@ Test(failures_of_fields, of_any_file_end_a_run_and_resume_with_words)
   try_calls(&(struct trial){"file", "resume cut --steps 9 --quiet", "cp -r part cut", no_file, 149}, "");
 }
 
-/* A sample may miss the few calls that take fields.h5 back to a checkpoint. */
+/* A sample may miss the few calls of the rollback of fields.h5 to a checkpoint. */
 Test(failures_of_fields, of_any_seek_leave_what_can_be_resumed)
 {
   try_calls(&(struct trial){"lseek", "resume cut --steps 9 --quiet", "cp -r part cut", no_file, 1}, "");

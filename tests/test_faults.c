@@ -1,4 +1,4 @@
-/* What a disk or a shell does to a run: a clear message, exit code 4, and the last good checkpoint stays. */
+/* Faults of disk and folder: a clear message, exit code 4, and the last good checkpoint remains. */
 #include "shell.h"
 
 static const char *const pair = "domain: {size: [64, 60]}\n"
@@ -87,7 +87,7 @@ Test(faults, a_missing_folder_or_case_is_named)
   cr_expect_eq(shell("grep -q '^delbm: nothing to resume: bare holds no checkpoint$' err"), 0);
 }
 
-/* Starts a run without end, does something to its folder once there are rows, and returns the run's exit code. */
+/* Starts a run without end, runs the script on its folder once there are rows, and returns the run's exit code. */
 static int disturb(const char *what)
 {
   return shell("$DELBM run pair.yaml --quiet --out cut --set run.steps=100000000 %s >out 2>err & p=$!; "
@@ -110,7 +110,7 @@ Test(faults, a_folder_that_is_removed_moved_or_replaced_ends_the_run)
     cr_expect_eq(
         shell("grep -q '^delbm: cannot .* cut[/:]' err && grep -q status=failed out && ! ls cut/* 2>/dev/null"), 0,
         "%s", what[k]);
-    /* what is being removed may lack one file before all are gone */
+    /* during its removal the folder may lack only some files */
     cr_expect_eq(shell("test %zu = 0 || "
                        "grep -q '^delbm: cannot go on in cut: it was removed, moved or replaced while the run' err",
                        k),
@@ -150,7 +150,7 @@ Test(faults, a_folder_of_frames_that_is_removed_ends_the_run)
 }
 #endif
 
-/* What a run in the folder `cut` writes. */
+/* Arguments of a run in the folder `cut`. */
 static const char *const short_run = "run pair.yaml --quiet --out cut --set run.steps=300"
 #ifdef DELBM_PNG
                                      " --set output.frames.every=100"
@@ -160,7 +160,7 @@ static const char *const short_run = "run pair.yaml --quiet --out cut --set run.
 #endif
     ;
 
-/* Each name that a run writes, and each with .tmp behind it, leads to a file outside. */
+/* Every file name of a run, with and without .tmp, is a link or fifo that leads outside of the folder. */
 Test(faults, links_and_fifos_of_a_files_name_are_replaced_and_what_they_lead_to_stays)
 {
   static const char *const plant[] = {"ln -s \"$PWD/precious\"", "ln precious", "mkfifo"};

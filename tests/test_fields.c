@@ -1,4 +1,4 @@
-/* Fields: what is sampled, what stands in fields.h5 and fields.xdmf, and who can read it. */
+/* Fields: samples, fields.h5 and fields.xdmf, and their readers. */
 #include "drive.h"
 #include "scenes.h"
 #include "shell.h"
@@ -62,7 +62,7 @@ Test(sample, counts_what_discs_cover_once)
   for (int k = 0; k < 3000; k++) sum += sample.occupation[k], largest = fmax(largest, sample.occupation[k]);
   cr_expect_float_eq(sum, M_PI * 49, 1e-9, "%.17g", sum);
   cr_expect_float_eq(largest, 1, 1e-15);
-  /* a second disc on much of the first: no cell counts more than once */
+  /* a second disc over much of the first: no cell is counted twice */
   scene_add_disc(&scene, 7, 1, 56, 24.6)->motion = DISC_FIXED;
   sample = take(start(&scene), &grid);
   for (int k = 0; k < 3000; k++) cr_assert_leq(sample.occupation[k], 1);
@@ -80,8 +80,8 @@ static double *occupation_of(const struct scene *scene)
   return occupation;
 }
 
-/* What one disc covers is the area itself (test_occupation); of a pair, in each cell, the sum of both areas. */
-Test(sample, counts_in_each_cell_of_a_pair_what_either_disc_covers_alone)
+/* One disc: its area (test_occupation). A pair: in each cell the sum of both areas. */
+Test(sample, has_in_each_cell_of_a_pair_the_sum_of_both_fractions)
 {
   for (int form = 0; form < FORM_COUNT; form++)
     for (int motion = DISC_FREE; motion <= DISC_DRIVEN; motion++) {
@@ -112,7 +112,7 @@ Test(sample, counts_in_each_cell_of_a_pair_what_either_disc_covers_alone)
     }
 }
 
-/* Body force and the force against volume flux are part of what the velocity is read with. */
+/* Half of body force and zero-flux force enters the velocity. */
 Test(sample, fields_that_are_set_are_read_back_whatever_the_forces)
 {
   enum { NX = 30, NY = 26, CELLS = NX * NY };
@@ -231,7 +231,7 @@ Test(fields, are_read_by_h5py)
   cr_expect_eq(shell("%s read.py", interpreter), 0);
 }
 
-/* Origin and spacing are those of the samples' cell centres, z first. */
+/* Origin and spacing refer to the samples' cell centres, z first. */
 Test(fields, have_their_place_and_their_discs_in_the_xdmf_file)
 {
   cr_assert_eq(shell("$DELBM run flow.yaml --quiet --out a --set run.steps=1 >/dev/null"), 0);
@@ -275,7 +275,7 @@ Test(fields, open_in_paraview)
       0);
 }
 
-/* A dataset of a/fields.h5, all of it; to be freed. */
+/* A whole dataset of a/fields.h5, to be freed. */
 static double *read_set(const char *path)
 {
   const hid_t file = H5Fopen("a/fields.h5", H5F_ACC_RDONLY, H5P_DEFAULT), set = H5Dopen2(file, path, H5P_DEFAULT);
@@ -310,7 +310,7 @@ Test(fields, of_poiseuille_flow_are_the_parabola_and_its_slope)
   free(rho), free(u), free(w);
 }
 
-Test(fields, of_fluid_at_rest_have_the_pressure_that_carries_its_weight)
+Test(fields, of_fluid_at_rest_have_the_pressure_that_balances_its_weight)
 {
   enum { NX = 6, NY = 30 };
   const double weight = 1e-5;
@@ -375,7 +375,7 @@ static void set_mark(struct reversible *file, struct reversible_mark *mark)
   cr_assert(reversible_set_mark(file, mark, &status), "%s", status.message);
 }
 
-/* A process that makes marks and datasets until it is killed; it tells the marks, and copies the file at each. */
+/* A process that writes marks and datasets until it is killed, prints the marks and copies the file at each mark. */
 static void write_until_killed(int marks)
 {
   struct status status;
@@ -416,7 +416,7 @@ Test(fields, file_goes_back_to_its_last_two_marks_byte_for_byte_after_a_kill_at_
       cr_expect_eq(shell("cmp x.h5 copy%d", m), 0, "kill %d, mark %d", k, m);
       reversible_close(&file);
     }
-    /* and goes on from the first to the second as before */
+    /* and continues from the first mark to the second */
     cr_assert(reversible_return(&file, "x.h5", "x.undo", &mark[0], &status), "%s", status.message);
     add_sets(&file, 20, 60);
     cr_expect_eq(shell("cmp x.h5 copy1"), 0, "kill %d", k);
@@ -442,7 +442,7 @@ Test(fields, without_their_way_back_are_left_as_they_are)
   cr_expect_eq(shell("grep -q 'cannot open a/fields.h5.undo: No such file' err && cmp fields.h5 a/fields.h5"), 0);
 }
 
-Test(fields, of_other_samples_are_refused_on_resume_by_key_and_those_of_before_go_on)
+Test(fields, of_other_samples_are_refused_on_resume_by_key_and_equal_samples_continue)
 {
   static const struct {
     const char *from, *to, *said;

@@ -73,7 +73,7 @@ static struct flow_state shear_wave(const void *context, int x, int y)
   return state;
 }
 
-/* Without its stress it would lose nothing in the first step, with a part of it only that part. */
+/* Without its initial stress the wave would not decay in the first step. */
 Test(wave, of_shear_that_starts_with_its_stress_decays_from_the_first_step)
 {
   const double viscosity = 0.1, k = 2 * M_PI / WAVE;
@@ -101,7 +101,7 @@ static struct flow_state rising(const void *context, int x, int y)
   return (struct flow_state){.density = 1, .velocity = {0, 1e-4}};
 }
 
-/* Fluid that moves as a whole along an axis that walls close. */
+/* Uniform initial velocity along an axis closed by walls. */
 Test(closed_box, loses_98_percent_of_its_mean_momentum_within_four_steps)
 {
   enum { NX = 30, NY = 40, CELLS = NX * NY };

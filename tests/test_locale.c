@@ -1,5 +1,5 @@
-/* A host, or a process, whose locale has a decimal comma: numbers are read and written with a point all the same, and the
- * locale of the host stays as it is. The locale is made here, of the sources in Debian's package `locales`. */
+/* A host, or a process, whose locale has a decimal comma: numbers are read and written with a point, and the locale
+ * of the host is unchanged. The locale is compiled here from the sources in Debian's package `locales`. */
 #include "shell.h"
 
 #include "delbm/delbm.h"
@@ -9,7 +9,7 @@
 
 static const char *const german = "de_DE.UTF-8";
 
-/* A folder of its own, with the locale in it. */
+/* A temporary folder with the locale. */
 static void enter(void)
 {
   shell_enter();
@@ -95,7 +95,7 @@ Test(locales, of_the_host_change_no_result_and_stay_as_they_are)
   cr_expect_eq(memcmp(&second.of_text, &loaded.of_text, sizeof second.of_text), 0, "saved with a comma");
 }
 
-Test(locales, of_the_host_are_not_those_of_messages)
+Test(locales, of_the_host_do_not_change_messages)
 {
   struct delbm_simulation *s;
   struct delbm_status status;
@@ -115,8 +115,8 @@ Test(locales, of_the_host_are_not_those_of_messages)
   cr_expect(has_comma());
 }
 
-/* The failure is that of the last disc, found by the last thread. */
-Test(locales, of_the_host_are_not_those_of_messages_from_other_threads)
+/* The failure is caused by the last disc, in the last thread. */
+Test(locales, of_the_host_do_not_change_messages_from_other_threads)
 {
   struct delbm_simulation *s;
   struct delbm_status status;
@@ -138,7 +138,7 @@ Test(locales, of_the_host_are_not_those_of_messages_from_other_threads)
   delbm_close(s);
 }
 
-/* The program itself in a process with a comma: its files and what it prints are the same. */
+/* The program in a process with a decimal comma: equal files and output. */
 Test(locales, of_the_process_change_no_file_of_a_run)
 {
   shell_write("case.yaml", "title: pair\n"
@@ -161,7 +161,7 @@ Test(locales, of_the_process_change_no_file_of_a_run)
 #endif
   );
   setenv("DELBM_FAULTY", DELBM_FAULTY, 1);
-  setenv("ASAN_OPTIONS", "detect_leaks=0", 1); /* with LOCPATH a library that HDF5 is linked to leaks at its start */
+  setenv("ASAN_OPTIONS", "detect_leaks=0", 1); /* with LOCPATH a library of HDF5 leaks at its start */
   cr_assert_eq(shell("uses() { $1 run case.yaml --quiet --set contact.stiffness=0.5 --out $2 >$2.out 2>&1 && "
                      "$1 resume $2 --steps 300 >$2.out 2>&1 && $1 info case.yaml >$2.info && "
                      "$1 analyse $2 --json $2.json --tables >$2.analysis && "

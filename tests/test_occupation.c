@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A scene's discs and where they are; its box may be any. */
+/* A scene's discs and their occupation of a box of any size. */
 struct painting {
   struct scene scene;
   struct discs discs;
@@ -62,7 +62,7 @@ static void *cells_of(const struct painting *p)
   return cells;
 }
 
-/* Spreads one disc's shares over all cells of the box. */
+/* Writes one disc's weights w_p B to all cells of the box. */
 static void spread_shares(const struct painting *p, size_t disc, double *cells)
 {
   const int nx = p->scene.domain.size[0], ny = p->scene.domain.size[1];
@@ -76,7 +76,8 @@ static void spread_shares(const struct painting *p, size_t disc, double *cells)
   }
 }
 
-/* One disc's eps in all cells of the box: from its shares where it is alone, in a form whose B determines eps (19). */
+/* One disc's eps in all cells of the box, from its weights without other discs, in a form whose B determines eps
+ * (19). */
 static void spread(const struct painting *p, size_t disc, double *cells)
 {
   struct painting alone = {.scene = p->scene};
@@ -110,7 +111,7 @@ static double nearest(const struct painting *p, int axis, double displacement)
   return scene_is_periodic(&p->scene, axis) ? displacement - size * rint(displacement / size) : displacement;
 }
 
-/* Lower left corner of a cell, seen from the disc. */
+/* Lower left corner of a cell relative to the disc's centre. */
 static void corner_of(const struct painting *p, size_t disc, int x, int y, double corner[2])
 {
   corner[0] = nearest(p, 0, x + 0.5 - p->discs.x[disc]) - 0.5;
@@ -144,7 +145,7 @@ static double chord_in_strip(double x, void *data)
   return fmax(0, fmin(s->high, h) - fmax(s->low, -h));
 }
 
-/* Where the circle meets the strip's lines, between at[0] and at[1]: break points in order, none upon another. */
+/* Intersections of the circle with the strip's lines, between at[0] and at[1]: distinct break points in order. */
 static size_t break_points(const struct strip *s, double at[6])
 {
   size_t count = 2;
@@ -160,8 +161,8 @@ static size_t break_points(const struct strip *s, double at[6])
   return count;
 }
 
-/* Area of the disc at the origin inside a rectangle, by adaptive quadrature between the places where the circle meets
- * the rectangle's lines. */
+/* Area of the disc at the origin inside a rectangle, by adaptive quadrature between the intersections of the circle
+ * with the rectangle's lines. */
 static double area_by_quadrature(double radius, const double low[2], const double high[2], double accuracy)
 {
   static gsl_integration_workspace *workspace;
@@ -171,13 +172,13 @@ static double area_by_quadrature(double radius, const double low[2], const doubl
   if (at[0] >= at[1]) return 0;
   gsl_function f = {chord_in_strip, &strip};
   double area, error;
-  gsl_set_error_handler_off(); /* judged by its estimate of the error */
+  gsl_set_error_handler_off(); /* the error estimate is checked instead */
   gsl_integration_qagp(&f, at, break_points(&strip, at), accuracy / 100, 0, 1000, workspace, &area, &error);
   cr_assert(error < accuracy / 2, "quadrature: error %g", error);
   return area;
 }
 
-/* Quadrature of a few of the partly covered cells. */
+/* Quadrature of a few of the rim cells. */
 static void check_some_cells(const struct painting *p, gsl_rng *random, unsigned long seed)
 {
   const int nx = p->scene.domain.size[0], cells_count = nx * p->scene.domain.size[1];
@@ -208,7 +209,7 @@ static void one_disc(struct painting *p, int nx, int ny, enum sides sides, doubl
   paint(p);
 }
 
-Test(occupation, fractions_are_the_areas_that_disc_and_cell_share)
+Test(occupation, fractions_are_the_areas_of_disc_and_cell_in_common)
 {
   const unsigned long seed = 11;
   gsl_rng *random = random_from(seed);
@@ -249,7 +250,7 @@ Test(occupation, fractions_beyond_walls_are_left_out)
   static const double radii[] = {0.5, 3.3, 10, 47, 400};
   for (size_t k = 0; k < sizeof radii / sizeof radii[0]; k++) {
     const double radius = radii[k];
-    const int nx = (int)ceil(1.5 * radius) + 1, ny = (int)ceil(radius) + 1; /* it reaches beyond several at once */
+    const int nx = (int)ceil(1.5 * radius) + 1, ny = (int)ceil(radius) + 1; /* the disc crosses several sides */
     const double places[][2] = {{nx / 2.0, ny / 2.0}, {0.3, ny / 2.0}, {nx / 2.0, ny - 0.2}, {0, 0}, {nx - 0.7, 0.1}};
     for (size_t n = 0; n < sizeof places / sizeof places[0]; n++) {
       struct painting p;
@@ -263,8 +264,8 @@ Test(occupation, fractions_beyond_walls_are_left_out)
   }
 }
 
-/* With round numbers a disc's edge may meet a grid line but for round-off, in which half of all digits can drown. The
- * disc before it leaves other line tables behind. */
+/* With round numbers a disc's edge may be on a grid line within round-off, which the square root enlarges to half of
+ * all digits. */
 Test(occupation, edges_on_grid_lines_but_for_round_off_are_painted_like_any_other)
 {
   struct painting p = {.scene = scene_box(1100, 48, 0.05, SIDES_PERIODIC)};
@@ -325,8 +326,8 @@ static double into_box(const struct painting *p, int axis, double at)
   return at >= size ? at - size : at;
 }
 
-/* Most discs move by part of a cell, some jump, some rest, of these some at another spin, some fall upon a grid line or
- * another's abscissa. */
+/* Most discs move by a part of a cell; some jump; some rest, with or without another spin; some are put on a grid
+ * line or on the abscissa of another disc. */
 static void stir(struct painting *p, gsl_rng *random)
 {
   struct discs *d = &p->discs;
@@ -341,13 +342,13 @@ static void stir(struct painting *p, gsl_rng *random)
   }
 }
 
-/* Whether two tables of the same discs hold the same bits, disc by disc. */
+/* Compares the bits of two tables of the same discs, disc by disc. */
 static const char *compare_cells(const struct occupation *a, const struct occupation *b)
 {
   const size_t indices = a->discs * sizeof(int32_t);
   if (memcmp(a->column, b->column, indices) || memcmp(a->row, b->row, indices) || memcmp(a->rows, b->rows, indices))
     return "places";
-  for (size_t i = 0; i < a->discs; i++) /* where the exchange finds the sums of a disc's rows */
+  for (size_t i = 0; i < a->discs; i++) /* index of the sums of a disc's rows */
     if (memcmp(a->place + 2 * a->first_row[i], b->place + 2 * b->first_row[i],
                2 * (size_t)a->rows[i] * sizeof *a->place))
       return "rows of discs";
@@ -360,7 +361,7 @@ static bool same_run(const struct run *a, const struct run *b)
          !memcmp(&a->rx, &b->rx, sizeof a->rx) && !memcmp(&a->ry, &b->ry, sizeof a->ry);
 }
 
-/* ... and band by band. Returns what differs, or NULL. */
+/* Compares the bits of two tables disc by disc and band by band. Returns the name of the difference, or NULL. */
 static const char *compare(const struct occupation *a, const struct occupation *b)
 {
   const char *difference = compare_cells(a, b);
@@ -379,7 +380,7 @@ static const char *compare(const struct occupation *a, const struct occupation *
   return difference;
 }
 
-/* The difference between a table with a past and one without, at the same places. */
+/* Compares a table after many steps with a new table at the same positions. */
 static const char *compare_with_fresh(const struct painting *p)
 {
   struct painting fresh = {.scene = p->scene};
@@ -504,7 +505,7 @@ Test(occupation, tables_are_the_same_bits_for_any_number_of_threads)
   check_threads(SIDES_CLOSED, 51);
 }
 
-/* A small box crowded with discs, and the fractions and shares of all of them in all cells. */
+/* A small crowded box, and the fractions and weights of all discs in all cells. */
 enum { CROWD = 22, CROWD_NX = 45, CROWD_NY = 38, CROWD_CELLS = CROWD_NX * CROWD_NY };
 
 struct crowd {
@@ -548,7 +549,7 @@ static int check_shares(const struct crowd *c, int cell, unsigned long seed)
   const bool midpoint = c->p.scene.coupling.form == FORM_MIDPOINT;
   const double damping = between ? 0.5 : fmin(0.5, 0.006 / three_nu), most = midpoint ? 1 / (1 + damping) : 1;
   const double whole = fmin(most, total * three_nu / (1 - total + three_nu * (midpoint ? total : 1))); /* weight.h */
-  const double accuracy = 1e-14 + 1e-15 / three_nu; /* by which round-off in eps changes B */
+  const double accuracy = 1e-14 + 1e-15 / three_nu; /* change of B by round-off in eps */
   cr_expect_float_eq(shares, whole, accuracy, "seed %lu, cell %d: %.17g, not %.17g", seed, cell, shares, whole);
   for (int i = 0; i < CROWD; i++)
     cr_expect_float_eq(c->share[i][cell], c->eps[i][cell] / sum * whole, accuracy, "seed %lu, cell %d, disc %d", seed,
@@ -558,7 +559,7 @@ static int check_shares(const struct crowd *c, int cell, unsigned long seed)
 
 static const enum sides both_sides[] = {SIDES_PERIODIC, SIDES_CLOSED};
 
-Test(occupation, owners_share_a_cell_in_proportion_to_what_they_cover)
+Test(occupation, owners_of_a_cell_have_weights_in_proportion_to_their_fractions)
 {
   static struct crowd c;
   int most = 0;
@@ -588,7 +589,7 @@ static double area_by_all_cells(const struct crowd *c, uint32_t a, uint32_t b)
   return area;
 }
 
-/* Gap between two discs, by the nearest images of their centres. */
+/* Gap between two discs, nearest image. */
 static double gap_between(const struct painting *p, uint32_t a, uint32_t b)
 {
   const double dx = nearest(p, 0, p->discs.x[b] - p->discs.x[a]), dy = nearest(p, 1, p->discs.y[b] - p->discs.y[a]);

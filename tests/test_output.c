@@ -1,4 +1,4 @@
-/* What a run leaves behind: particles.csv, pictures, run.json, its line on stdout, and the folder that holds them. */
+/* Results of a run: particles.csv, pictures, run.json, its line on stdout, and their folder. */
 #include "output/csv.h"
 #include "output/file.h"
 #include "output/picture.h"
@@ -135,7 +135,7 @@ Test(csv, numbers_read_back_as_they_were)
   cr_assert_str_eq(row, "\n");
 }
 
-/* With a cell of 2 m, a step of 0.5 s and a fluid of 3 kg/m^3 no two scales are equal but of what has one unit. */
+/* With a cell of 2 m, a step of 0.5 s and a fluid of 3 kg/m^3 two scales are equal only for equal units. */
 Test(csv, every_column_has_one_in_si_with_its_unit_and_scale)
 {
   static const struct {
@@ -289,7 +289,7 @@ static void assert_starts(const char *text, const char *start)
   cr_assert_eq(strncmp(text, start, strlen(start)), 0, "'%s' starts: %s", start, text);
 }
 
-Test(summary, run_json_holds_the_figures)
+Test(summary, run_json_has_the_figures)
 {
   struct scene scene = some_scene();
   struct summary summary = some_summary(&scene);
@@ -322,7 +322,7 @@ Test(summary, only_a_run_that_is_not_done_has_a_message)
   assert_holds(run_json(&summary), "\"status\": \"diverged\",\n  \"message\": \"density is nan\",\n");
 }
 
-Test(summary, run_json_holds_the_reason_for_every_end_and_a_warning_where_there_is_one)
+Test(summary, run_json_has_the_reason_for_every_end_and_a_warning_where_there_is_one)
 {
   struct scene scene = some_scene();
   struct summary summary = some_summary(&scene);
@@ -390,7 +390,7 @@ Test(progress, time_left_is_told_in_the_unit_that_suits_it)
   }
 }
 
-/* What a run of 1000 steps in steps of `chunk` says. */
+/* Progress of a run of 1000 steps in steps of `chunk`. */
 static char *lines_of_progress(enum progress_style style, int chunk)
 {
   char *text;
@@ -414,7 +414,7 @@ Test(progress, lines_come_at_the_quarters)
   for (int k = 0; k < 5; k++) assert_holds(text, shares[k]);
 }
 
-/* A run that goes on at step 1000 has not done those steps in no time. */
+/* A resumed run counts only its own steps. */
 Test(progress, speed_is_of_the_steps_since_the_start)
 {
   char *text, *speed;
@@ -617,7 +617,7 @@ Test(picture, of_discs_with_values_colours_each_by_its_own_and_leaves_out_the_ma
   picture->values_end = 6;
   back = draw(picture);
   cr_expect_eq(colour_at(&back, 200, 50), MIDDLE, "%06x", colour_at(&back, 200, 50));
-  /* without an end of their own, on the scale of the flow */
+  /* without values_end the scale of the flow applies */
   picture->values_end = 0;
   picture->maximum = 6;
   back = draw(picture);

@@ -1,5 +1,4 @@
-/* The program from outside: its contracts on command line, exit codes and files. DELBM is the path of the built
- * program. */
+/* The program from outside: command line, exit codes and files. DELBM is the path of the program. */
 #include "maps.h"
 #include "shell.h"
 
@@ -26,7 +25,7 @@ static bool contains(const char *path, const char *text)
   return found;
 }
 
-/* Discs that fall, meet each other and the walls: enough of everything, in a second. */
+/* Discs that fall and collide with each other and the walls, within a second. */
 static const char *const crowd = "title: crowd\n"
                                  "domain: {size: [200, 180]}\n"
                                  "fluid: {viscosity: 0.03}\n"
@@ -92,7 +91,7 @@ Test(program, a_run_leaves_the_files_that_scripts_rely_on)
     cr_expect(contains("o/run.json", quoted), "%s", keys[k]);
   }
   cr_expect_eq(shell("test $(wc -l <out) = 1 && grep -q '^delbm: status=done steps=40 ' out"), 0);
-  /* the case as run is a case again, and the same one */
+  /* the written case is valid and equal to the case */
   cr_assert_eq(shell("%s run o/case.yaml --quiet --out again >/dev/null", DELBM), 0);
   cr_expect_eq(shell("cmp o/particles.csv again/particles.csv && cmp o/case.yaml again/case.yaml"), 0);
 #ifdef DELBM_PNG
@@ -150,7 +149,7 @@ Test(program, info_foresees_the_speed_that_a_force_drives_fluid_to)
                0);
 }
 
-/* A README line that its own program warns of misleads. */
+/* The cases in README.md must not cause warnings. */
 Test(program, the_cases_of_the_readme_get_no_note_and_stay_below_the_advised_speed)
 {
   cr_assert_eq(shell("awk '/^```yaml/ {n++; on = 1; next} /^```/ {on = 0} on {print > (\"readme\" n \".yaml\")}' "
@@ -214,7 +213,7 @@ Test(program, help_and_version_are_everywhere)
   cr_expect_eq(shell("%s run --help-keys | grep -q fluid.viscosity", DELBM), 0);
 }
 
-Test(program, info_names_the_stages_that_run_and_those_left_out)
+Test(program, info_names_the_stages_that_run_and_the_stages_left_out)
 {
   shell_write("crowd.yaml", crowd);
   shell_write("empty.yaml",
@@ -253,7 +252,7 @@ Test(program, analyse_finds_the_drag_of_an_array_from_force_and_mean_velocity)
   cr_expect_eq(
       shell("awk '$1 == \"body.resistance\" { k = $2 } END { exit !(k > 0.98 * 51.53 && k < 1.02 * 51.53) }' out"), 0);
   cr_expect(contains("out", "relative to the mean velocity of the fluid") && !contains("out", "not steady"));
-  /* a run that was cut short says that it is not steady, one without an end that U is unknown */
+  /* a short run notes that it is not steady, an unfinished run that U is unknown */
   cr_assert_eq(shell("%s run array.yaml --set run.steps=200 --set output.every=10 --quiet --out o >/dev/null && "
                      "%s analyse o >out && rm o/run.json && %s analyse o >out2",
                      DELBM, DELBM, DELBM),
@@ -265,7 +264,7 @@ Test(program, analyse_finds_the_drag_of_an_array_from_force_and_mean_velocity)
 Test(program, an_interrupted_run_ends_in_order)
 {
   shell_write("crowd.yaml", crowd);
-  /* once it has written rows: before, nobody may be listening */
+  /* after the first rows, when the handler is installed */
   cr_assert_eq(shell("%s run crowd.yaml --set run.steps=100000000 --quiet --out o >out 2>err & p=$!; "
                      "while kill -0 $p && test $(cat o/particles.csv 2>/dev/null | wc -l) -le 1; do sleep 0.05; done; "
                      "kill -INT $p; wait $p; test $? = 130 && grep -q status=interrupted out",
@@ -293,7 +292,7 @@ Test(program, many_more_threads_than_cores_change_nothing)
                0);
 }
 
-/* The benchmark itself fails where a file of one of its runs holds a NaN. */
+/* The benchmark itself fails on a NaN in a file. */
 Test(program, no_case_of_the_quick_stability_maps_leaves_nan_in_a_file)
 {
   cr_expect_eq(shell("%s bench stability --quick --json maps.json >out", DELBM), 0);
@@ -318,7 +317,7 @@ Test(program, a_disc_too_heavy_for_its_contacts_ends_the_run_when_it_leaves_the_
   cr_expect_eq(shell("grep -q 'was pushed out of the box' err"), 0);
 }
 
-/* What bash completes a line to, whose last word is the one being written. */
+/* Expects bash's completion of the last word of a line. */
 static int completes(const char *line, const char *expected)
 {
   return shell("cat >line.bash <<'end'\n"
@@ -390,7 +389,7 @@ Test(program, each_option_is_accepted_and_stands_in_help_completion_and_manual_p
       0);
 }
 
-/* The case `dkt`, shortened, and the program by its name, as the README's lines expect them. */
+/* The case `dkt`, shortened, and the program in the path, for the lines in README.md. */
 static void prepare_sweep(void)
 {
 #ifndef DELBM_PNG
@@ -433,7 +432,7 @@ Test(program, a_sweep_as_a_slurm_array_runs_as_the_readme_says)
                0);
 }
 
-/* What the maps of `delbm bench stability` say of a case, and that a sound case hears nothing of them. */
+/* Warnings from the maps of `delbm bench stability`, and none for a sound case. */
 Test(program, info_warns_of_what_the_maps_found_to_fail)
 {
   static const struct {
@@ -513,7 +512,7 @@ Test(program, info_warns_once_of_small_viscosity)
 
 static const char *const notes_of_rest[] = {"come to lie in a pile", "at rest", "sound between"};
 
-/* True for exactly those of these notes that are named by a letter: p(ile), o(verlap), s(ound). */
+/* Expects exactly the notes named by letters: p(ile), o(verlap), s(ound). */
 static void expect_notes(const char *path, const char *settings, const char *letters)
 {
   cr_assert_eq(shell("$DELBM info %s %s >i 2>err || { cat err; exit 1; }", path, settings), 0, "%s %s", path, settings);
@@ -522,7 +521,8 @@ static void expect_notes(const char *path, const char *settings, const char *let
                  notes_of_rest[k]);
 }
 
-/* Measured: in 50,000 steps the fluid goes on carrying 45 % of the weight, and discs overlap by 2 % of their radius. */
+/* Measured: after 50,000 steps the pore pressure supports 45 % of the weight, and discs overlap by 2 % of their
+ * radius. */
 static const char *const pile =
     "units: {dx: 0.1 mm, dt: 0.02 ms, density: 1000 kg/m^3}\n"
     "domain: {size: [12 mm, 12 mm]}\n"
@@ -558,7 +558,7 @@ Test(program, info_warns_of_a_pile_and_of_overlap_under_load_where_discs_come_to
       shell("grep -q 'at rest discs and the side that they lie on overlap by about 1[23] %% of their radius' i"), 0);
 }
 
-/* 200 x 100 cells of a column of discs that collapses: it overlapped by up to 14 % of the radius, 16 % at the ground. */
+/* A column of discs that collapses, 200 x 100 cells. Measured overlap: up to 14 % of the radius, 16 % on the ground. */
 Test(program, info_foresees_the_overlap_in_a_column_and_names_the_stiffness)
 {
   shell_write("pile.yaml", pile);
@@ -575,7 +575,7 @@ Test(program, info_foresees_the_overlap_in_a_column_and_names_the_stiffness)
                0);
 }
 
-/* Measured Strouhal numbers stand in src/cli/advice_sound.c. */
+/* Measured Strouhal numbers: src/cli/advice_sound.c. */
 Test(program, info_warns_of_sound_between_the_sides_where_it_was_seen_to_spoil_the_shedding)
 {
   shell_write("tone.yaml", "domain:\n"
@@ -620,7 +620,7 @@ Test(program, info_has_no_such_warning_for_the_cases_that_are_right)
   }
 }
 
-/* The figure of info against that of run.json, MiB; a build with sanitizers takes more. */
+/* Memory by info against run.json, MiB; a build with sanitizers needs more. */
 static void expect_measured_memory(const char *settings)
 {
   cr_expect_eq(shell("%s run crowd.yaml --quiet --out o %s >/dev/null && "
@@ -636,7 +636,7 @@ Test(program, takes_within_a_fifth_the_memory_that_info_says)
 {
   if (SLOWNESS > 1) cr_skip_test("a sanitizer takes memory of its own");
   setenv("OMP_NUM_THREADS", "2", 1);
-  unsetenv("MALLOC_PERTURB_"); /* meson's: writes to all that is allocated, used or not */
+  unsetenv("MALLOC_PERTURB_"); /* set by meson: it touches all allocated memory */
   shell_write("crowd.yaml",
               "domain: {size: [600, 600]}\n"
               "fluid: {viscosity: 0.05}\n"

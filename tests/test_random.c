@@ -1,6 +1,6 @@
-/* Random scenes, many of them absurd: each is refused with a message that names its key, or it runs, and then mass and
- * momentum are held and every number is finite, or it says that it has diverged. The seed is printed;
- * DELBM_RANDOM_SEED gives another one, DELBM_RANDOM_SCENES another number of scenes. */
+/* Random scenes, many of them absurd: each is refused with a message that names its key, or it runs with mass and
+ * momentum conserved and finite numbers, or it reports divergence. The seed is printed; DELBM_RANDOM_SEED sets it,
+ * DELBM_RANDOM_SCENES the number of scenes. */
 #include "case/case_file.h"
 #include "drive.h"
 #include "scenes.h"
@@ -31,7 +31,7 @@ static const char *one_of(gsl_rng *random, const char *const words[], size_t cou
 #define ONE_OF(random, ...)                                                                                            \
   one_of(random, (const char *const[]){__VA_ARGS__}, sizeof((const char *const[]){__VA_ARGS__}) / sizeof(const char *))
 
-/* A number, which rarely is none that anyone can want. */
+/* Writes a number, rarely an absurd one. */
 static void put_number(FILE *to, gsl_rng *random, double number, double absurd)
 {
   if (chance(random, absurd))
@@ -50,7 +50,7 @@ static void put_point(FILE *to, gsl_rng *random, const char *key, double x, doub
   fputs("]", to);
 }
 
-/* How absurd a scene is, and its size. */
+/* Absurdity and size of a scene. */
 struct mood {
   double absurd;
   int nx, ny;
@@ -201,7 +201,7 @@ static enum fate run(const struct scene *scene, const char *text)
   return done ? HELD : DIVERGED;
 }
 
-/* Reads and runs a case given as text. */
+/* Reads and runs a case in a text. */
 static enum fate try_case(const char *text)
 {
   char path[64];
@@ -230,7 +230,7 @@ static unsigned long wish(const char *name, unsigned long fallback)
   return given ? strtoul(given, NULL, 10) : fallback;
 }
 
-Test(random, scenes_hold_mass_and_momentum_or_are_refused_by_key_or_diverge_with_words, .timeout = 60 * SLOWNESS)
+Test(random, scenes_conserve_mass_and_momentum_or_are_refused_by_key_or_diverge_with_words, .timeout = 60 * SLOWNESS)
 {
   const unsigned long seed = wish("DELBM_RANDOM_SEED", 1), scenes = wish("DELBM_RANDOM_SCENES", 400);
   unsigned long fates[3] = {0};

@@ -1,4 +1,4 @@
-/* Saving and restoring, in memory and from outside: a run that was stopped, however, ends as one that never was. */
+/* Saving and restoring, in memory and from outside: an interrupted run ends like an unbroken run. */
 #include "drive.h"
 #include "forge.h"
 #include "scenes.h"
@@ -146,7 +146,7 @@ Test(state, that_has_diverged_is_not_saved)
   fclose(store.stream);
 }
 
-/* Overwrites bytes that stand at a distance behind a mark in a saved state, and says what restoring makes of them. */
+/* Overwrites bytes at a distance after a mark in a saved state; true if the state can be restored. */
 static bool restores_with(const struct scene *scene, const struct saved *saved, const char *mark, size_t behind,
                           const void *bytes, size_t size, struct status *status)
 {
@@ -246,10 +246,10 @@ Test(checkpoint, of_a_case_in_other_units_is_of_another_case)
   scene_clear(&scene);
 }
 
-/* The rest is from outside. */
+/* From here on from outside. */
 TestSuite(resume, .init = shell_enter, .fini = shell_leave, .timeout = 120 * SLOWNESS);
 
-/* Discs that fall, meet each other and the walls; frames and rows at steps of their own. */
+/* Discs that fall and collide with each other and the walls; frames and rows at different steps. */
 static const char *const crowd = "title: crowd\n"
                                  "domain: {size: [200, 180]}\n"
                                  "fluid: {viscosity: 0.03}\n"
@@ -269,7 +269,7 @@ static const char *const crowd = "title: crowd\n"
 #endif
     ;
 
-/* Compares the folders `whole` and `cut`: all but what tells of the time that a run took. */
+/* Compares the folders `whole` and `cut`, but for the run time. */
 static const char *const compare =
     "cmp whole/particles.csv cut/particles.csv && cmp whole/case.yaml cut/case.yaml && "
     "{ test ! -e whole/frames || diff -r whole/frames cut/frames; } && "
@@ -284,12 +284,12 @@ static const char *const compare =
 /* 108 bytes: stage_times, and behind them a mark, struct run_record and the checksum. */
 _Static_assert(sizeof(struct stage_times) + 16 + sizeof(struct run_record) + 4 == 108, "what `compare` cuts off");
 
-Test(resume, after_kills_at_any_moment_the_files_are_those_of_a_run_never_stopped)
+Test(resume, after_kills_at_any_moment_the_files_equal_an_unbroken_run)
 {
   shell_write("crowd.yaml", crowd);
   cr_assert_eq(shell("OMP_NUM_THREADS=2 $DELBM run crowd.yaml --quiet --out whole >/dev/null"), 0);
   for (int seed = 1; seed <= 3; seed++) {
-    /* kills after 0.05 to 0.3 s, wherever that is, and ever later on a busy machine, until a run gets to its end */
+    /* kills after 0.05 to 0.3 s, later at each attempt, until a run completes */
     cr_assert_eq(shell("RANDOM=%d; export RANDOM; rm -rf cut; n=0; r=%d; go=\"run crowd.yaml --out cut\"; "
                        "while :; do n=$((n + 1)); r=$(((r * 1103515245 + 12345) %% 2147483648)); "
                        "OMP_NUM_THREADS=$((1 + n %% 3)) $DELBM $go --quiet >/dev/null 2>err & p=$!; "
@@ -303,7 +303,7 @@ Test(resume, after_kills_at_any_moment_the_files_are_those_of_a_run_never_stoppe
   }
 }
 
-/* The exit code of a run that gets a signal once it has added rows to the table: before, nobody may be listening. */
+/* The exit code of a run that gets a signal after its first rows, when the handler is installed. */
 static int stop(const char *signal, const char *command)
 {
   return shell("rows() { cat cut/particles.csv 2>/dev/null | wc -l; }; n=$(rows); "
@@ -371,7 +371,7 @@ Test(resume, refuses_what_is_damaged_or_foreign_and_says_why)
 {
   shell_write("crowd.yaml", crowd);
   cr_assert_eq(shell("$DELBM run crowd.yaml --quiet --out whole >/dev/null && cp -r whole good"), 0);
-  /* of two, the newer is damaged: the older is used and the end is the same */
+  /* the newer of two checkpoints is damaged: the older is used, with the same end */
   cr_assert_eq(
       shell("cp -r good cut; newer=$(for k in 0 1; do "
             "printf '%%d %%d\\n' $(od -An -t d8 -j 24 -N 8 good/checkpoint.$k) $k; done | sort -n | tail -n 1); "
@@ -402,7 +402,7 @@ Test(resume, refuses_what_is_damaged_or_foreign_and_says_why)
                      "2>/dev/null; $DELBM resume cut 2>err"),
                4);
   cr_expect_eq(shell("grep -q 'cut/checkpoint.0: of format 7; this delbm .* reads format [0-9]*' err"), 0);
-  /* the table was changed behind our back */
+  /* the table was truncated */
   cr_expect_eq(shell("cp good/checkpoint.0 cut/; truncate -s 100 cut/particles.csv; $DELBM resume cut 2>err"), 4);
   cr_expect_eq(shell("grep -q 'cut/particles.csv has 100 bytes, fewer than' err"), 0);
 }

@@ -49,7 +49,7 @@ static struct reading read_with(const char *text, char *set)
   return read_sized(text, strlen(text), &set, 1);
 }
 
-/* The minimal case with one override, which must be valid. */
+/* The minimal case with one valid override. */
 static struct scene scene_with(char *set)
 {
   struct reading reading = read_with(minimal, set);
@@ -149,7 +149,7 @@ static void expect_same_scene(const struct scene *a, const struct scene *b)
   cr_expect_eq(a->output.frames.maximum, b->output.frames.maximum);
 }
 
-/* Writing and reading gives the same scene, and writing that the same text. */
+/* Expects that a scene written and read is the same scene and the same text. */
 static void expect_round_trip(const struct scene *scene)
 {
   char *text = written(scene);
@@ -210,7 +210,7 @@ static const char full[] = "title: \"All keys: \\\"one\\\" # two\\n\\u00fc\\u202
                            "run: {steps: 1e6, check: 7}\n"
                            "output: {every: 0, frames: {every: 50, quantity: vorticity, maximum: 0.125}}\n";
 
-Test(scene, full_case_gives_domain_and_fluid)
+Test(scene, full_case_sets_domain_and_fluid)
 {
   struct reading reading = read_text(full);
   const struct scene *scene = &reading.scene;
@@ -234,7 +234,7 @@ Test(scene, full_case_gives_domain_and_fluid)
   release(&reading);
 }
 
-Test(scene, full_case_gives_particles)
+Test(scene, full_case_sets_particles)
 {
   struct reading reading = read_text(full);
   const struct scene *scene = &reading.scene;
@@ -251,7 +251,7 @@ Test(scene, full_case_gives_particles)
   release(&reading);
 }
 
-Test(scene, full_case_gives_contact_run_and_output)
+Test(scene, full_case_sets_contact_run_and_output)
 {
   struct reading reading = read_text(full);
   const struct scene *scene = &reading.scene;
@@ -417,7 +417,7 @@ Test(scene, later_override_wins_and_reaches_into_sides_and_discs)
   release(&reading);
 }
 
-Test(scene, override_leaves_what_shares_an_alias_alone)
+Test(scene, override_does_not_change_other_uses_of_an_alias)
 {
   static const char text[] = "domain: {size: [100, 200]}\nfluid: {viscosity: &nu 0.05}\nrun: {steps: 10}\n"
                              "particles:\n  discs:\n    - &disc {radius: 5, position: &at [50, 50], density: 2}\n";
@@ -683,7 +683,7 @@ static const char furnished[] = "domain: {size: [100, 200]}\nfluid: {viscosity: 
                                 "particles:\n  density: 2\n  discs: [{radius: 5, position: [50, 180]}]\n"
                                 "  fill: {radius: 4, spacing: 20, region: [0, 0, 100, 100]}\n";
 
-/* True if the case with this number (of a vector: in x) for the key is refused for the key's range. */
+/* True if this number (for a vector: in x) is refused by the range of the key. */
 static bool out_of_range(const struct key *key, double number)
 {
   char path[KEY_PATH + 8], set[256], allowed[VALUE_TEXT];
@@ -702,13 +702,13 @@ static bool out_of_range(const struct key *key, double number)
   return refused;
 }
 
-/* The number itself and its neighbours, inside and outside of the range. */
+/* Tests an end of the range and its neighbours inside and outside. */
 static void expect_end(const struct key *key, double end, bool open, int outwards)
 {
   const bool whole = key->kind == KEY_INTEGER || key->kind == KEY_LONG;
   const double far = outwards > 0 ? (double)INFINITY : -(double)INFINITY;
   double outside = whole ? end + outwards : nextafter(end, far), inside = whole ? end - outwards : nextafter(end, -far);
-  if (end == 0 && !whole) outside = outwards * 1e-300, inside = -outside; /* what is smaller underflows */
+  if (end == 0 && !whole) outside = outwards * 1e-300, inside = -outside; /* smaller numbers underflow */
   cr_expect_eq(out_of_range(key, end), open, "%s at %g", key->path, end);
   cr_expect(out_of_range(key, outside), "%s beyond %g", key->path, end);
   cr_expect_not(out_of_range(key, inside), "%s before %g", key->path, end);
@@ -731,7 +731,7 @@ Test(scene, every_range_of_the_table_ends_exactly_where_it_says)
   cr_expect_gt(ends, 45);
 }
 
-/* Limits that follow from several keys: what is refused lies beside what is not. */
+/* Limits by several keys: values on either side of each limit. */
 Test(scene, limits_between_keys_are_refused_from_where_they_are_passed)
 {
   static const struct {
@@ -796,7 +796,7 @@ Test(scene, limits_between_keys_are_refused_from_where_they_are_passed)
     }
 }
 
-/* A disc that is wider than the box less four cells would meet its own image, along periodic axes alone. */
+/* Along a periodic axis a wider disc would touch its own image. */
 Test(scene, disc_may_be_four_cells_narrower_than_a_periodic_extent)
 {
   static const struct {
@@ -829,7 +829,7 @@ Test(scene, disc_may_be_four_cells_narrower_than_a_periodic_extent)
     }
 }
 
-/* Golden tests: tests/broken/NAME.yaml and what is said about it in NAME.expected. */
+/* Golden tests: tests/broken/NAME.yaml and the message in NAME.expected. */
 
 static char *read_expected(const char *name)
 {
@@ -889,7 +889,7 @@ Test(scene, broken_cases_get_the_expected_errors, .timeout = 60 * SLOWNESS)
   cr_expect_geq(count, 100);
 }
 
-Test(errors, beyond_those_kept_are_counted_in_a_last_line)
+Test(errors, beyond_the_limit_are_counted_in_a_last_line)
 {
   struct case_errors errors = {0};
   char *text = NULL;

@@ -1,4 +1,4 @@
-/* The sides of the box: what they let in and out, corners, outlets. */
+/* The sides of the box: inlets, outlets, corners. */
 #include "drive.h"
 #include "scenes.h"
 
@@ -17,7 +17,7 @@ static double excess_mass(struct simulation *simulation)
   return sum;
 }
 
-/* No fluid leaves these boxes: their mass is what has come in. */
+/* No fluid leaves these boxes: the mass gained is the inflow. */
 Test(inlet, lets_in_its_velocity_times_its_length_to_round_off)
 {
   enum { NX = 30, NY = 21, STEPS = 11 };
@@ -124,8 +124,8 @@ Test(duct, what_enters_at_the_inlet_leaves_through_the_outlet)
   scene_clear(&scene);
 }
 
-/* The inlet sets the fluid in motion by a wave that runs to the outlet. What the outlet returns of it, the inlet sends
- * back, and so on: after four times there and back the velocity is uniform only if most of it has gone out. */
+/* The inlet starts a wave that runs to the outlet; both ends reflect it. After four round trips the velocity is
+ * uniform only if the outlet absorbs most of the wave. */
 Test(outlet, lets_out_the_sound_of_an_inlet_that_starts_at_once)
 {
   const int nx = 400, ny = 3;
@@ -144,7 +144,8 @@ Test(outlet, lets_out_the_sound_of_an_inlet_that_starts_at_once)
   scene_clear(&scene);
 }
 
-/* Mean density at the face of the outlet and pressure drop, as a density, after `steps` steps in a channel of resting walls. */
+/* Mean density at the face of the outlet and pressure drop, as a density, after `steps` steps in a channel of
+ * resting walls. */
 static void channel(int length, int height, double speed, double viscosity, int64_t steps, double *face, double *drop)
 {
   struct scene scene = scene_box(length, height, viscosity, SIDES_CLOSED);
@@ -195,8 +196,8 @@ static struct flow_state pulse(const void *middle, int x, int y)
   return (struct flow_state){.density = 1 + rise, .velocity = {rise / sqrt(3), 0}};
 }
 
-/* A weak pulse that runs to the outlet through fluid at rest. Short against the box, it is reflected by the zero gradient
- * alone: by 2 - sqrt(3) = 0.268 if long against a cell, and less otherwise. */
+/* A weak pulse that runs to the outlet through fluid at rest. A pulse short against the box is reflected by the zero
+ * gradient alone: by 2 - sqrt(3) = 0.268 if long against a cell, and less otherwise. */
 Test(outlet, reflects_less_than_27_percent_of_a_short_pulse_of_sound)
 {
   enum { NX = 500, NY = 4 };

@@ -47,7 +47,7 @@ Test(lattice, moment_rows_are_orthogonal)
     }
 }
 
-Test(lattice, equilibrium_moments_are_those_of_the_quadratic_equilibrium)
+Test(lattice, equilibrium_moments_agree_with_the_quadratic_equilibrium)
 {
   const double rho = 1.07, u[2] = {0.08, -0.05}, u2 = u[0] * u[0] + u[1] * u[1];
   double f[Q], m[Q], expected[Q];
@@ -84,7 +84,7 @@ static void random_cover(struct cover *cover, gsl_rng *random)
   }
 }
 
-/* A random state, the same in both: what the fast kernel holds may have been rounded to single precision. */
+/* The same random state in both, rounded to the precision of the fast kernel. */
 static void random_state(struct populations *p, struct reference *r, gsl_rng *random)
 {
   for (int k = 0; k < CELLS; k++)

@@ -1,5 +1,5 @@
-/* Each scene turned by 90, 180 and 270 degrees, mirrored in x, in y and along both diagonals gives the same flow: sides
- * and their corners, forces, discs. No reference shares a fault with what it is compared to here. */
+/* Each scene turned by 90, 180 and 270 degrees, mirrored in x, in y and along both diagonals must have the same
+ * flow: sides and their corners, forces, discs. The code is its own reference. */
 #include "scenes.h"
 #include "symmetry.h"
 
@@ -28,7 +28,7 @@ static struct flow_state waves(const void *context, int x, int y)
   return state;
 }
 
-/* A kind of side, in the side's own directions: into the box, and along the side with the box on the left. */
+/* A kind of side. Velocity: into the box, and along the side with the box on the left. */
 struct kind {
   const char *name;
   enum side_type type;
@@ -57,7 +57,7 @@ static void set_side(struct scene *scene, enum side_name name, const struct kind
                     .velocity = {kind->inward * n[0] + kind->along * n[1], kind->inward * n[1] - kind->along * n[0]}};
 }
 
-/* The kinds `left` and `bottom` meet at the lower left corner, and what faces them at the other three. */
+/* Kinds `left` and `bottom` form the lower left corner; the opposite sides have the kinds' opposites. */
 static void set_sides(struct scene *scene, int left, int bottom)
 {
   set_side(scene, SIDE_LEFT, &kinds[left]);
@@ -66,7 +66,7 @@ static void set_sides(struct scene *scene, int left, int bottom)
   set_side(scene, SIDE_TOP, &kinds[kinds[bottom].opposite]);
 }
 
-/* What else a scene may have: one bit each. */
+/* Variants of a scene: one bit each. */
 enum { WITH_FORCE = 1, WITH_MRT = 2, BLOCKED = 4, SINGLE = 8, VARIANTS = 16 };
 
 static struct scene box(int nx, int ny, int left, int bottom, int variant)
@@ -88,7 +88,7 @@ static const char *in_words(char text[160], int left, int bottom, int variant, c
   return text;
 }
 
-/* Fluid alone, from a flow that stirs all of it. */
+/* Fluid alone, from the flow `waves`. */
 static void expect_fluid_symmetric(int left, int bottom)
 {
   char text[160];
@@ -149,8 +149,7 @@ static const int disc_boxes[][2] = {{RESTING, RESTING}, {PERIODIC, RESTING}, {PE
 
 enum { DISC_BOXES = sizeof disc_boxes / sizeof disc_boxes[0] };
 
-/* Discs of every kind, none near another at first; two run into each other, one into the lower or, in images, another
- * side. */
+/* Discs of every kind, apart at first; two collide with each other, one with the lower side. */
 static struct scene crew(const int sides[2], int variant, enum coupling_solve solve)
 {
   struct scene scene = box(40, 35, sides[0], sides[1], variant);
@@ -204,7 +203,7 @@ Test(discs, are_symmetric_with_every_form_area_search_and_without_volume_flux)
     scene.contact.search = k / 6 == 2 ? SEARCH_LINKED_CELL : SEARCH_GRID;
     scene.contact.substeps = k / 6 == 2 ? 3 : 0;
     scene.fluid.zero_flux = k / 6 < 3;
-    /* with so much damping in one sub-step, impulses are bounded by the energy that contacts hold */
+    /* at this damping in one sub-step the impulse is limited by the stored energy */
     if (k / 6 == 0) scene.contact.damping = 40, scene.contact.substeps = 1;
     snprintf(what, sizeof what, "box %d, form %d, area and search %d", k % 2, k / 2 % FORM_COUNT, k / 6);
     expect_symmetric(&scene, &(struct symmetric_run){.steps = DISC_STEPS, .what = what});
@@ -212,7 +211,7 @@ Test(discs, are_symmetric_with_every_form_area_search_and_without_volume_flux)
   }
 }
 
-/* A disc in a corner of a box whose other rows go ahead of it. */
+/* A disc in a corner of a box, whose other rows are swept several steps ahead. */
 Test(discs, are_symmetric_where_rows_out_of_their_reach_go_ahead)
 {
   char text[160];
@@ -230,8 +229,8 @@ Test(discs, are_symmetric_where_rows_out_of_their_reach_go_ahead)
     }
 }
 
-/* Fluid in a cell of two discs begins with the velocity of both, in proportion to what each covers. */
-Test(discs, are_symmetric_where_they_share_cells_at_the_start)
+/* Fluid in a cell of two discs starts with the mean of their velocities, weighted by the occupation fractions. */
+Test(discs, are_symmetric_with_common_cells_at_the_start)
 {
   char text[160];
   for (int k = 0; k < DISC_BOXES; k++)

@@ -1,4 +1,4 @@
-/* Units: conversions, and that a case in physical units is the same case. */
+/* Units: conversions, and equality of a case in physical and in lattice units. */
 #include "shell.h"
 
 #include "lattice/units.h"

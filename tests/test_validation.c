@@ -1,5 +1,5 @@
-/* The paper's cases, smaller and shorter, from outside: what cases/reproduce does at full size. Each holds the program to
- * published or independent values (cases/NAME/reference.csv). */
+/* The paper's cases, smaller and shorter than in cases/reproduce, from outside. Results are compared with published
+ * or independent values (cases/NAME/reference.csv). */
 #include "shell.h"
 
 #include <math.h>
@@ -15,7 +15,7 @@ static void run(const char *out, const char *name, const char *settings)
   cr_assert_eq(system(command), 0, "%s", command);
 }
 
-/* A figure of `delbm analyse`; NAN where it has none of that name. */
+/* A figure of `delbm analyse`; NAN if absent. */
 static double figure(const char *out, const char *name)
 {
   char command[256], line[256], key[64];
@@ -35,7 +35,7 @@ static void expect_near(const char *what, double value, double reference, double
             100 * (value / reference - 1), reference);
 }
 
-/* Figures 10 and 11: a step is 5e-4 s. The start is that of the run whose course is published (cases/dkt/README.md). */
+/* Figures 10 and 11: a step is 5e-4 s. The start is published (cases/dkt/README.md). */
 Test(validation, two_discs_draft_kiss_and_tumble_when_they_should)
 {
   static const char *const forms[] = {"unified", "owen"};
@@ -54,8 +54,8 @@ Test(validation, two_discs_draft_kiss_and_tumble_when_they_should)
   }
 }
 
-/* Figures 7 and 8: what side walls add is proportional to the part of the width that the disc takes; without it, the drag
- * of a fixed cylinder at the same Reynolds number, between 2.0001 at 20 and 1.7867 at 26. */
+/* Figures 7 and 8: the effect of side walls is proportional to the disc's diameter over the width; the extrapolated
+ * drag must agree with a fixed cylinder at the same Reynolds number, 2.0001 at 20 to 1.7867 at 26. */
 Test(validation, a_settling_disc_has_the_drag_of_a_cylinder)
 {
   double excess[2];
@@ -72,9 +72,9 @@ Test(validation, a_settling_disc_has_the_drag_of_a_cylinder)
   expect_near("drag over a cylinder's, in unbounded water", 2 * excess[1] - excess[0], 1, 5);
 }
 
-/* A disc of 0.25 cm, density 1.25, in a box of 2 x 6 cm, viscosity 0.1 cm^2/s: Reynolds number rho_s D U/mu of 17.27 at
- * most (Glowinski et al. 2001; the set-up of Wan & Turek 2006). The fall has 15 diameters, of which a third is its start.
- * One cell is 0.0125 cm, one step 1.5625e-4 s. */
+/* A disc of 0.25 cm, density 1.25, in a box of 2 x 6 cm, viscosity 0.1 cm^2/s: Reynolds number rho_s D U/mu of 17.27
+ * at most (Glowinski et al. 2001; the set-up of Wan & Turek 2006). The fall has 15 diameters; the start takes a
+ * third. One cell is 0.0125 cm, one step 1.5625e-4 s. */
 Test(validation, a_short_fall_has_its_terminal_speed_found)
 {
   shell_write("disc.yaml", "domain: {size: [160, 480]}\n"
@@ -93,8 +93,8 @@ Test(validation, a_short_fall_has_its_terminal_speed_found)
   cr_expect(isnan(figure("begun", "body.speed")));
 }
 
-/* Figure 9: drag and lift of R = 10 in a box of 40 R, less what that box adds: proportional to 1/L, so as much as R = 5
- * loses from 40 R to 80 R, twice. */
+/* Figure 9: drag and lift of R = 10 in a box of 40 R, less the effect of the box, which is proportional to 1/L:
+ * twice the change for R = 5 from 40 R to 80 R. */
 Test(validation, a_spinning_disc_is_lifted_and_dragged_as_computed_otherwise)
 {
   static const char *const boxes[] = {"coarse", "large", "fine"};
@@ -125,7 +125,7 @@ Test(validation, a_crowd_settles_with_a_straight_interface_onto_a_bed_that_takes
   expect_near("rise of the sediment's surface",
               figure("crowd", "settling.front_speed") / figure("crowd", "settling.front_speed_kynch"), 1, 7);
   const double bed = figure("crowd", "settling.bed");
-  /* that of the upper 100 cells of the full bed, on which little weighs: 0.66 to 0.74 */
+  /* concentration of the upper 100 cells of the full bed, under small load: 0.66 to 0.74 */
   cr_expect(bed > 0.65 && bed < 0.75, "concentration of the bed: %g", bed);
 }
 
