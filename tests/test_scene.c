@@ -134,6 +134,7 @@ static void expect_same_scene(const struct scene *a, const struct scene *b)
   expect_same_fill(&a->particles.fill, &b->particles.fill);
   expect_same_discs(a, b);
   cr_expect_eq(a->contact.area, b->contact.area);
+  cr_expect_eq(a->contact.law, b->contact.law);
   cr_expect_eq(a->contact.search, b->contact.search);
   cr_expect_eq(a->contact.stiffness, b->contact.stiffness);
   cr_expect_eq(a->contact.alpha, b->contact.alpha);
@@ -453,7 +454,7 @@ Test(scene, override_that_is_wrong_is_named)
        "precision, zero_flux, kernel"},
       {"gravity=[0, 1]", "--set gravity=[0, 1]: unknown key gravity; did you mean particles.gravity?"},
       {"contact.friction=1",
-       "--set contact.friction=1: unknown key contact.friction; expected one of area, search, edge, "
+       "--set contact.friction=1: unknown key contact.friction; expected one of law, area, search, edge, "
        "stiffness, alpha, damping, damping_form, substeps, steps_per_contact"},
       {"fluid.viscosity=thick",
        "--set fluid.viscosity=thick: fluid.viscosity: got thick; expected a number > 0 and <= 10"},

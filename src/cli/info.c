@@ -219,10 +219,11 @@ static bool print_overlaps(const struct scene *scene, struct status *status)
 static void print_contacts(const struct scene *scene, const struct stages *stages)
 {
   if (!stages->pairs && !stages->walls) return;
-  char area[CHOICE];
-  printf("contacts     area by %s, stiffness %g, alpha %g, damping %g (%s)\n",
-         choice_of("contact.area", scene->contact.area, area), scene->contact.stiffness, scene->contact.alpha,
-         scene->contact.damping, scene->contact.damping_form == DAMPING_CRITICAL ? "critical" : "as printed");
+  char area[CHOICE], law[CHOICE];
+  printf("contacts     law %s, area by %s, stiffness %g, alpha %g, damping %g (%s)\n",
+         choice_of("contact.law", scene->contact.law, law), choice_of("contact.area", scene->contact.area, area),
+         scene->contact.stiffness, scene->contact.alpha, scene->contact.damping,
+         scene->contact.damping_form == DAMPING_CRITICAL ? "critical" : "as printed");
   if (scene->contact.substeps > 0)
     printf("sub-steps    %d a step, as the case says\n", scene->contact.substeps);
   else if (stages->substeps)

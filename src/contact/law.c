@@ -10,9 +10,12 @@ static struct spring spring_of_area(const struct contact_law *law, const struct 
   return (struct spring){law->stiffness * k->lens.area, law->stiffness * k->lens.chord};
 }
 
+/* In the order of the choices of contact.law, which name them. */
+static contact_spring *const springs[] = {spring_of_area};
+
 struct contact_law contact_law_of(const struct scene *scene)
 {
-  return (struct contact_law){.spring = spring_of_area,
+  return (struct contact_law){.spring = springs[scene->contact.law],
                               .stiffness = scene->contact.alpha * scene->contact.stiffness,
                               .k = scene->contact.stiffness,
                               .damping = scene->contact.damping,

@@ -4,7 +4,7 @@
  * energy stored (state.h). eta = 2 eta_0 sqrt(k_n m_eff), 1/m_eff = 1/m_a + 1/m_b; (10) prints 1/m_eff under the root, which is not a
  * damping coefficient (contact.damping_form: printed).
  *
- * A new law is a function of type contact_spring and a row of the table in law.c. */
+ * A new law is a function of type contact_spring, a row of the table in law.c, and its name as a choice of the key contact.law. */
 #ifndef DELBM_CONTACT_LAW_H
 #define DELBM_CONTACT_LAW_H
 

@@ -105,6 +105,7 @@ struct scene {
   } particles;
 
   struct {
+    unsigned law; /* row of the table of springs in contact/law.c */
     enum contact_area area;
     enum contact_search search;
     double edge; /* of the linked cells; 0: one diameter */
