@@ -14,8 +14,8 @@
  * positions:
  *   J_k = law(x_k, v_k, (h_last + h)/2),   v' = v + h dV + K sum J_k,   x' = x + h v',
  * where the impulse lasts from the middle of the last sub-step to the middle of this one; with h alone a change of h would gain energy.
- * The last sub-step ends at the very velocity that the solve gives for the sum of all impulses. With n = 1 discs stay where they are
- * here, and their motion does all. Areas by cells are known once a step: with them n = 1.
+ * The last sub-step ends at the very velocity that the solve gives for the sum of all impulses. With n = 1 the
+ * motion of the discs does the same by itself. Areas by cells are known once a step: with them n = 1.
  *
  * State. What a contact passes on from step to step (state.h) is saved, in the order of the list, for contacts that have acted, and is
  * part of a checkpoint.
@@ -51,11 +51,11 @@ static bool allocate_moving(struct contacts *c, size_t discs, struct status *sta
   const char *what = "the contacts";
   return (c->moving = memory_allocate(discs, sizeof *c->moving, what, status)) &&
          (c->is_moving = memory_allocate(discs, sizeof *c->is_moving, what, status)) &&
-         (c->within_step.x = memory_allocate(discs, sizeof *c->within_step.x, what, status)) &&
-         (c->within_step.y = memory_allocate(discs, sizeof *c->within_step.y, what, status)) &&
-         (c->within_step.vx = memory_allocate(discs, sizeof *c->within_step.vx, what, status)) &&
-         (c->within_step.vy = memory_allocate(discs, sizeof *c->within_step.vy, what, status)) &&
-         (c->within_step.omega = memory_allocate(discs, sizeof *c->within_step.omega, what, status)) &&
+         (c->at.x = memory_allocate(discs, sizeof *c->at.x, what, status)) &&
+         (c->at.y = memory_allocate(discs, sizeof *c->at.y, what, status)) &&
+         (c->at.vx = memory_allocate(discs, sizeof *c->at.vx, what, status)) &&
+         (c->at.vy = memory_allocate(discs, sizeof *c->at.vy, what, status)) &&
+         (c->at.omega = memory_allocate(discs, sizeof *c->at.omega, what, status)) &&
          (c->impulse = memory_allocate(discs, sizeof *c->impulse, what, status));
 }
 
@@ -73,7 +73,7 @@ bool contacts_create(struct contacts *c, const struct scene *scene, struct conta
                          .substeps = 1,
                          .max_substeps = 1,
                          .placed = true};
-  if ((!needs.substeps || allocate_moving(c, discs->count, status)) &&
+  if (((!needs.pairs && !needs.sides) || allocate_moving(c, discs->count, status)) &&
       (!needs.pairs || pairs_create(&c->pairs, scene, discs, c->within, status)))
     return true;
   contacts_destroy(c);
@@ -84,9 +84,8 @@ void contacts_destroy(struct contacts *c)
 {
   pairs_destroy(&c->pairs);
   states_destroy(&c->states);
-  void *const arrays[] = {
-      c->list,          c->scratch,        c->moving,         c->is_moving,         c->within_step.x,
-      c->within_step.y, c->within_step.vx, c->within_step.vy, c->within_step.omega, c->impulse};
+  void *const arrays[] = {c->list, c->scratch, c->moving, c->is_moving, c->at.x,
+                          c->at.y, c->at.vx,   c->at.vy,  c->at.omega,  c->impulse};
   for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; k++) free(arrays[k]);
   *c = (struct contacts){0};
 }
@@ -114,6 +113,20 @@ static double inverse_mass(const struct discs *d, uint32_t i)
   return d->motion[i] == DISC_FREE ? 1 / d->mass[i] : 0;
 }
 
+/* Puts a disc, or nothing for a side, among those that the stage moves. */
+static void start_moving(struct contacts *c, const struct discs *d, uint32_t i)
+{
+  if (contact_is_with_side(i) || c->is_moving[i]) return;
+  c->is_moving[i] = 1;
+  c->moving[c->moving_count++] = i;
+  c->at.x[i] = d->x[i];
+  c->at.y[i] = d->y[i];
+  c->at.vx[i] = d->vx[i];
+  c->at.vy[i] = d->vy[i];
+  c->at.omega[i] = d->omega[i];
+  c->impulse[i] = (struct wrench){0};
+}
+
 /* Adds a contact to the list, whose saved state is looked for from *at on. */
 static bool add_contact(struct contacts *c, const struct discs *d, uint32_t a, uint32_t b, size_t *at,
                         struct status *status)
@@ -125,6 +138,8 @@ static bool add_contact(struct contacts *c, const struct discs *d, uint32_t a, u
   struct contact *contact = &c->list[c->count++];
   *contact = (struct contact){.a = a, .b = b, .is_new = !saved, .inverse_mass = inverse};
   if (saved) contact->state = *saved;
+  start_moving(c, d, a);
+  start_moving(c, d, b);
   return true;
 }
 
@@ -182,8 +197,7 @@ static bool is_by_cells(const struct contacts *m, const struct contact *c)
 /* Prepares a contact for the step, and returns the sub-steps that it needs at the overlap that it may reach within the step. */
 static int prepare(const struct contacts *m, const struct discs *d, const struct exchange *e, struct contact *c)
 {
-  const struct disc_motions start = {d->x, d->y, d->vx, d->vy, d->omega};
-  struct kinematics k = kinematics_of(m->scene, d, c->a, c->b, &start);
+  struct kinematics k = kinematics_of(m->scene, d, c->a, c->b, &m->at);
   const double overlap = k.radius[0] + (contact_is_with_side(c->b) ? 0 : k.radius[1]) - k.distance;
   c->damping = contact_damping(&m->law, c->inverse_mass);
   if (c->is_new && m->placed) c->state.stored = contact_energy(&m->law, k.radius, overlap);
@@ -223,34 +237,11 @@ static bool check_substeps(const struct contacts *c, struct team *team)
   return false;
 }
 
-static void start_moving(struct contacts *c, const struct discs *d, uint32_t i)
-{
-  if (contact_is_with_side(i) || c->is_moving[i]) return;
-  c->is_moving[i] = 1;
-  c->moving[c->moving_count++] = i;
-  c->within_step.x[i] = d->x[i];
-  c->within_step.y[i] = d->y[i];
-  c->within_step.vx[i] = d->vx[i];
-  c->within_step.vy[i] = d->vy[i];
-  c->within_step.omega[i] = d->omega[i];
-  c->impulse[i] = (struct wrench){0};
-}
-
-/* Lists the discs that take sub-steps: none if one sub-step suffices. By one thread. */
-static void start_all(struct contacts *c, const struct discs *d)
-{
-  if (c->substeps > c->max_substeps) c->max_substeps = c->substeps;
-  for (size_t k = 0; k < c->count && c->substeps > 1; k++) {
-    start_moving(c, d, c->list[k].a);
-    start_moving(c, d, c->list[k].b);
-  }
-}
-
 /* The impulse of a contact over `duration`, in a sub-step of length h, as wrenches on both bodies about their centres. */
-static void find_impulse(const struct contacts *m, const struct discs *d, const struct exchange *e,
-                         const struct disc_motions *at, double duration, double h, struct contact *c)
+static void find_impulse(const struct contacts *m, const struct discs *d, const struct exchange *e, double duration,
+                         double h, struct contact *c)
 {
-  struct kinematics k = kinematics_of(m->scene, d, c->a, c->b, at);
+  struct kinematics k = kinematics_of(m->scene, d, c->a, c->b, &m->at);
   if (is_by_cells(m, c)) k.lens.area = c->cells_area;
   if (k.lens.area > 0) kinematics_respond(&k, e, c->a, c->b, h);
   k.damping = c->damping;
@@ -260,44 +251,33 @@ static void find_impulse(const struct contacts *m, const struct discs *d, const 
   if (!contact_is_with_side(c->b)) c->on_b = (struct wrench){fx, fy, -k.arm[1] * j.tangential};
 }
 
-static void add_to_disc(struct discs *d, uint32_t i, const struct wrench *w)
+static void add_wrench(struct wrench *sum, const struct wrench *w)
 {
-  d->contact_fx[i] += w->fx;
-  d->contact_fy[i] += w->fy;
-  d->contact_torque[i] += w->torque;
+  sum->fx += w->fx;
+  sum->fy += w->fy;
+  sum->torque += w->torque;
 }
 
-static void add_to_substep(struct contacts *m, uint32_t i, const struct wrench *w)
-{
-  m->impulse[i].fx += w->fx;
-  m->impulse[i].fy += w->fy;
-  m->impulse[i].torque += w->torque;
-}
-
-/* Adds the impulses to their discs, or to what moves these in the sub-step; by one thread. */
-static void add_impulses(struct contacts *m, struct discs *d)
+/* Adds the impulses of the sub-step to its discs; by one thread. */
+static void add_impulses(struct contacts *m)
 {
   for (size_t k = 0; k < m->count; k++) {
     const struct contact *c = &m->list[k];
-    for (int end = 0; end < (contact_is_with_side(c->b) ? 1 : 2); end++) {
-      const uint32_t i = end ? c->b : c->a;
-      const struct wrench *w = end ? &c->on_b : &c->on_a;
-      if (m->substeps > 1)
-        add_to_substep(m, i, w);
-      else
-        add_to_disc(d, i, w);
-    }
+    add_wrench(&m->impulse[c->a], &c->on_a);
+    if (!contact_is_with_side(c->b)) add_wrench(&m->impulse[c->b], &c->on_b);
   }
 }
 
 /* Moves disc i through a sub-step of length h. */
 static void move_disc(struct contacts *c, const struct exchange *e, struct discs *d, double h, uint32_t i)
 {
-  struct disc_motions *at = &c->within_step;
+  struct disc_motions *at = &c->at;
   const struct response *r = &e->response[i];
   const struct wrench *impulse = &c->impulse[i];
   double dv[3];
-  add_to_disc(d, i, impulse);
+  d->contact_fx[i] += impulse->fx;
+  d->contact_fy[i] += impulse->fy;
+  d->contact_torque[i] += impulse->torque;
   response_to(r, (const double[3]){impulse->fx, impulse->fy, impulse->torque}, dv);
   at->vx[i] += h * r->dvx + dv[0];
   at->vy[i] += h * r->dvy + dv[1];
@@ -315,6 +295,7 @@ static void save_states(struct contacts *m)
     if (c->state.stored > 0 || c->state.impulse > 0) states_add(&m->states, c->a, c->b, &c->state);
   }
   m->placed = false;
+  if (m->substeps > m->max_substeps) m->max_substeps = m->substeps;
 }
 
 /* The step of the contacts in the list, by all threads of a region. */
@@ -322,18 +303,14 @@ static void run_contacts(struct contacts *c, const struct exchange *e, struct di
 {
   prepare_all(c, d, e);
   if (!check_substeps(c, team)) return;
-#pragma omp single
-  start_all(c, d);
   const double h = 1.0 / c->substeps;
-  const struct disc_motions start = {d->x, d->y, d->vx, d->vy, d->omega};
-  const struct disc_motions at = c->substeps > 1 ? c->within_step : start;
   for (int n = 0; n < c->substeps; n++) {
     const double duration = 0.5 * (c->last_substep + h);
 #pragma omp for schedule(static)
-    for (size_t k = 0; k < c->count; k++) find_impulse(c, d, e, &at, duration, h, &c->list[k]);
+    for (size_t k = 0; k < c->count; k++) find_impulse(c, d, e, duration, h, &c->list[k]);
 #pragma omp single
     {
-      add_impulses(c, d);
+      add_impulses(c);
       c->last_substep = h;
     }
 #pragma omp for schedule(static)

@@ -31,15 +31,15 @@ struct contacts {
   double *scratch; /* areas by cells: of each thread */
   size_t scratch_size, scratch_capacity;
 
-  /* with sub-steps: the discs in the list */
+  /* the discs of contacts in the list, as they are in sub-steps */
   uint32_t *moving;
   size_t moving_count;
-  uint8_t *is_moving;              /* [disc] */
-  struct disc_motions within_step; /* of those discs */
-  struct wrench *impulse;          /* [disc] in a sub-step */
-  double last_substep;             /* length of the last sub-step; 0 before the first */
-  int max_substeps;                /* of any step */
-  bool leave;                      /* after the list is made (team.h) */
+  uint8_t *is_moving;     /* [disc] */
+  struct disc_motions at; /* of those discs */
+  struct wrench *impulse; /* [disc] in a sub-step */
+  double last_substep;    /* length of the last sub-step; 0 before the first */
+  int max_substeps;       /* of any step */
+  bool leave;             /* after the list is made (team.h) */
 };
 
 bool contacts_create(struct contacts *contacts, const struct scene *scene, struct contact_needs needs,
@@ -61,8 +61,8 @@ bool stage_contact(struct contacts *contacts, const struct occupation *occupatio
 static inline bool contacts_moved(const struct contacts *c, size_t i, double position[2])
 {
   if (c->substeps == 1 || !c->is_moving[i]) return false;
-  position[0] = c->within_step.x[i];
-  position[1] = c->within_step.y[i];
+  position[0] = c->at.x[i];
+  position[1] = c->at.y[i];
   return true;
 }
 

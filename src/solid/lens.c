@@ -46,25 +46,3 @@ struct lens lens_of_wall(double radius, double d)
   const double half_chord = sqrt((radius - d) * (radius + d));
   return (struct lens){disc_segment(radius, half_chord, d), 2 * half_chord};
 }
-
-double lens_small(double ra, double rb)
-{
-  const double effective = isinf(rb) ? ra : ra * rb / (ra + rb);
-  return 4.0 / 3 * sqrt(2 * effective);
-}
-
-double lens_small_area(double c, double overlap)
-{
-  return c * overlap * sqrt(overlap);
-}
-
-double lens_small_chord(double c, double overlap)
-{
-  return 1.5 * c * sqrt(overlap);
-}
-
-double lens_small_overlap(double c, double area)
-{
-  const double ratio = area / c;
-  return cbrt(ratio * ratio);
-}
