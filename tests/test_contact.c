@@ -249,17 +249,20 @@ Test(law, damping_is_critical_at_one_or_as_printed)
 /* The rate at which the force grows with the overlap sets the sub-steps; its integral is the energy of discs put into each other. */
 Test(law, stiffness_and_energy_are_those_of_the_force)
 {
-  const struct contact_law law = law_of(10, 0.3, 0, DAMPING_CRITICAL);
   static const double radii[][2] = {{5, 5}, {3, 8}, {5, INFINITY}};
-  for (int n = 0; n < 3; n++)
-    for (double overlap = 1e-4; overlap < 2; overlap *= 3) {
-      const double h = 1e-4 * overlap;
-      const double low = contact_spring_at(&law, radii[n], overlap - h).force;
-      const double high = contact_spring_at(&law, radii[n], overlap + h).force;
-      const double work = contact_energy(&law, radii[n], overlap + h) - contact_energy(&law, radii[n], overlap - h);
-      cr_expect_float_eq((high - low) / (2 * h) / contact_spring_at(&law, radii[n], overlap).stiffness, 1, 1e-5);
-      cr_expect_float_eq(work / (2 * h) / contact_spring_at(&law, radii[n], overlap).force, 1, 1e-5);
-    }
+  for (unsigned choice = 0; choice < 2; choice++) {
+    const struct scene scene = {.contact = {.law = choice, .stiffness = 10, .alpha = 0.3}};
+    const struct contact_law law = contact_law_of(&scene);
+    for (int n = 0; n < 3; n++)
+      for (double overlap = 1e-4; overlap < 2; overlap *= 3) {
+        const double h = 1e-4 * overlap;
+        const double low = contact_spring_at(&law, radii[n], overlap - h).force;
+        const double high = contact_spring_at(&law, radii[n], overlap + h).force;
+        const double work = contact_energy(&law, radii[n], overlap + h) - contact_energy(&law, radii[n], overlap - h);
+        cr_expect_float_eq((high - low) / (2 * h) / contact_spring_at(&law, radii[n], overlap).stiffness, 1, 1e-5);
+        cr_expect_float_eq(work / (2 * h) / contact_spring_at(&law, radii[n], overlap).force, 1, 1e-5);
+      }
+  }
 }
 
 /* A linear spring: the overlap itself as the area. Unclamped, the force may pull. */
@@ -479,6 +482,45 @@ Test(impact, with_damping_kinetic_energy_never_grows)
     check_impacts(along_x, 0.02, dampings[k]);
     check_impacts(oblique, 0.2, dampings[k]);
     check_impacts(on_bottom_wall, 0.1, dampings[k]);
+  }
+}
+
+enum { OVERLAP, LINEAR }; /* choices of contact.law */
+
+/* Steps that an undamped impact of two heavy discs takes from touch to parting, from where they are long after it; and the speed at
+ * which they part over that at which they met. */
+static double impact_duration(unsigned law, double stiffness, double *restitution)
+{
+  const struct impact impact = {.radius = {10, 10}, .direction = {1, 0}, .speed = 0.02, .gap = 1.3, .overlap = 0.3};
+  struct scene scene = impact_scene(&impact);
+  scene.contact.law = law;
+  scene.contact.stiffness = stiffness;
+  struct simulation *simulation = start(&scene);
+  double closing, apart = -1;
+  while (apart < 1 && simulation_step(simulation) < 2000) {
+    advance(simulation, 10);
+    const double overlap = overlap_of(&impact, simulation_discs(simulation), &closing);
+    apart = closing < 0 ? -overlap : -1;
+  }
+  *restitution = -closing / impact.speed;
+  const double steps = (double)simulation_step(simulation) - (impact.gap + apart / *restitution) / impact.speed;
+  simulation_destroy(simulation);
+  scene_clear(&scene);
+  return steps;
+}
+
+Test(law, linear_lasts_half_a_period_of_its_spring_and_parts_as_the_overlap_law_does)
+{
+  const double mass = heavy * M_PI * 100 / 2, chord = lens_of_discs(10, 10, 19.9).chord;
+  omp_set_num_threads(1);
+  for (double half_period = 20; half_period <= 80; half_period *= 2) {
+    const double k = mass * pow(M_PI / half_period, 2), stiffness = k / (0.3 * chord);
+    double linear, overlap;
+    const double steps = impact_duration(LINEAR, stiffness, &linear);
+    impact_duration(OVERLAP, stiffness, &overlap);
+    cr_expect_float_eq(steps / half_period, 1, 0.01, "half period %g: %g steps", half_period, steps);
+    cr_expect_float_eq(linear, overlap, 0.005, "half period %g: restitution %g, by the overlap law %g", half_period,
+                       linear, overlap);
   }
 }
 

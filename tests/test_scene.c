@@ -781,6 +781,7 @@ Test(scene, limits_between_keys_are_refused_from_where_they_are_passed)
       {"output.fields", "{every: 0, region: [0, 0, 100, 200]}", "{every: 0, region: [0, 0, 101, 200]}"},
       {"output.fields", "{every: 0, region: [0, 0, 100, 200]}", "{every: 0, region: [0, 0, 100, 201]}"},
       {"output.fields", "{every: 0, region: [0, 0, 1, 1]}", "{every: 0, region: [0, 0, 1.5, 1]}"},
+      {"contact", "{law: linear, area: lens}", "{law: linear, area: cells}"},
       {"contact", "{area: cells, search: linked-cell, substeps: 1}", "{area: cells, substeps: 2}"},
       {"fluid", "{viscosity: 0.05, zero_flux: true}", "{viscosity: 0.05, zero_flux: 2}"},
       {"fluid", "{viscosity: 1e-15}", "{viscosity: 1e-17}"},

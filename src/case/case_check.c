@@ -145,6 +145,13 @@ static void check_substeps(struct draft *draft)
     draft_refuse(draft, "contact.substeps", "auto or 1: with contact.area: cells the overlap is known once a step");
 }
 
+/* The first law alone reads areas. */
+static void check_law(struct draft *draft)
+{
+  if (draft->scene.contact.area == AREA_CELLS && draft->scene.contact.law != 0)
+    draft_refuse(draft, "contact.area", "lens: areas by cells are for contact.law: overlap");
+}
+
 static void check_zero_flux(struct draft *draft)
 {
   if (!draft_gives(draft, "fluid.zero_flux") || !draft_knows(draft, "fluid.zero_flux") || !sides_known(draft)) return;
@@ -408,6 +415,7 @@ bool case_check(struct draft *draft, struct status *status)
   check_rates(draft);
   check_zero_flux(draft);
   check_substeps(draft);
+  check_law(draft);
   check_fill(draft);
   check_shown(draft);
   check_density(draft);

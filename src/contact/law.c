@@ -10,8 +10,21 @@ static struct spring spring_of_area(const struct contact_law *law, const struct 
   return (struct spring){law->stiffness * k->lens.area, law->stiffness * k->lens.chord};
 }
 
+/* (8): proportional to the overlap, F = alpha k_n c delta. c is the chord of the lens at an overlap of 1 % of the smaller radius, so that
+ * there the stiffness is that of the area law. */
+static struct spring spring_of_overlap(const struct contact_law *law, const struct kinematics *k)
+{
+  const double design = 0.01 * fmin(k->radius[0], k->radius[1]);
+  const bool side = isinf(k->radius[1]);
+  const double touch = side ? k->radius[0] : k->radius[0] + k->radius[1];
+  const struct lens lens =
+      side ? lens_of_wall(k->radius[0], touch - design) : lens_of_discs(k->radius[0], k->radius[1], touch - design);
+  const double stiffness = law->stiffness * lens.chord;
+  return (struct spring){stiffness * fmax(0, touch - k->distance), stiffness};
+}
+
 /* In the order of the choices of contact.law, which name them. */
-static contact_spring *const springs[] = {spring_of_area};
+static contact_spring *const springs[] = {spring_of_area, spring_of_overlap};
 
 struct contact_law contact_law_of(const struct scene *scene)
 {
