@@ -5,6 +5,7 @@
 
 #include <math.h>
 #include <signal.h>
+#include <sys/stat.h>
 
 static struct sample allocate_sample(size_t points)
 {
@@ -164,7 +165,7 @@ Test(sample, wraps_vorticity_at_periodic_sides_alone)
 
 #ifdef DELBM_HDF5
 
-#include "output/hdf5_file.h"
+#include <hdf5.h>
 
 static const char *const flow =
     "domain: {size: [120, 100], left: periodic, right: periodic}\n"
@@ -342,104 +343,146 @@ Test(fields, of_discs_cover_their_area)
   free(occupation);
 }
 
-Test(fields, without_checkpoints_leave_no_way_back)
+/* A run of flow.yaml in `cut` that is killed once there is a checkpoint after so many snapshots; its end is to be as `whole`. */
+static void cut_after(int snapshots)
 {
-  cr_assert_eq(shell("$DELBM run flow.yaml --quiet --out a >/dev/null; ls a/*.undo 2>/dev/null"), 2);
+  cr_assert_eq(
+      shell("$DELBM run flow.yaml --quiet --out cut --set run.steps=100000000 --set output.fields.every=10 "
+            "--set output.checkpoint.every=25 >/dev/null 2>&1 & p=$!; "
+            "until test $(ls cut/fields 2>/dev/null | wc -l) -gt %d -a -e cut/checkpoint.1; do sleep 0.01; done; "
+            "kill -KILL $p; wait $p; sed -i 's/steps: 100000000/steps: 3000/' cut/case.yaml",
+            snapshots),
+      0);
 }
 
-/* Writes datasets `from` and on, up to `count` of them. */
-static void add_sets(struct reversible *file, int from, int count)
+static void run_whole(void)
 {
-  struct status status;
-  struct hdf5_file open;
-  for (int k = from; k < count; k++) {
-    char name[16];
-    snprintf(name, sizeof name, "set%d", k);
-    cr_assert(hdf5_open(&open, file, &status), "%s", status.message);
-    const hsize_t size = (hsize_t)(1 + 10 * (k % 50));
-    const hid_t space = H5Screate_simple(1, &size, NULL), properties = H5Pcreate(H5P_DATASET_CREATE);
-    H5Pset_obj_track_times(properties, false);
-    const hid_t set = H5Dcreate2(open.handle, name, H5T_IEEE_F64LE, space, H5P_DEFAULT, properties, H5P_DEFAULT);
-    const double values[500] = {k, 2, 3};
-    cr_assert_geq(H5Dwrite(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), 0);
+  cr_assert_eq(shell("$DELBM run flow.yaml --quiet --out whole --set run.steps=3000 --set output.fields.every=10 "
+                     ">/dev/null"),
+               0);
+}
+
+static const char *const same = "cmp whole/fields.h5 cut/fields.h5 && cmp whole/fields.xdmf cut/fields.xdmf && "
+                                "test ! -e cut/fields";
+
+/* How the snapshots of a file lie in it: all by hard links, or all by external ones. */
+static int count_links(const char *path, H5L_type_t type)
+{
+  int count = 0;
+  const hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+  H5G_info_t group;
+  cr_assert(file >= 0 && H5Gget_info(file, &group) >= 0, "%s", path);
+  for (hsize_t k = 0; k < group.nlinks; k++) {
+    H5L_info_t link;
+    cr_assert(H5Lget_info_by_idx(file, ".", H5_INDEX_NAME, H5_ITER_INC, k, &link, H5P_DEFAULT) >= 0);
+    count += link.type == type;
+  }
+  H5Fclose(file);
+  return count;
+}
+
+Test(fields, of_a_run_that_ended_are_one_file_without_links_to_others)
+{
+  cr_assert_eq(shell("$DELBM run flow.yaml --quiet --out a >/dev/null; ls a/fields a/*.tmp 2>/dev/null"), 2);
+  cr_expect_eq(count_links("a/fields.h5", H5L_TYPE_HARD), 4);
+  cr_expect_eq(count_links("a/fields.h5", H5L_TYPE_EXTERNAL), 0);
+}
+
+Test(fields, are_read_through_fields_h5_after_a_kill_and_become_those_of_a_run_never_stopped)
+{
+  run_whole();
+  for (int k = 0; k < 3; k++) {
+    cut_after(12 + 7 * k);
+    const hid_t file = H5Fopen("cut/fields.h5", H5F_ACC_RDONLY, H5P_DEFAULT);
+    const hid_t set = H5Dopen2(file, "00000100/discs/velocity", H5P_DEFAULT);
+    double velocity[9];
+    cr_expect_geq(H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, velocity), 0);
+    cr_expect_lt(velocity[1], 0, "the first disc falls");
     H5Dclose(set);
-    H5Pclose(properties);
-    H5Sclose(space);
-    cr_assert(hdf5_close(&open, &status), "%s", status.message);
+    H5Fclose(file);
+    cr_expect_geq(count_links("cut/fields.h5", H5L_TYPE_EXTERNAL), 12);
+    cr_expect_eq(shell("! grep -o 'h5:/[0-9]*' cut/fields.xdmf | sort -u | "
+                       "while read -r n; do test -e cut/fields/${n#h5:/}.h5 || echo missing; done | grep -q missing"),
+                 0, "fields.xdmf names snapshots that are there");
+    cr_expect_eq(shell("$DELBM resume cut --quiet >/dev/null && %s", same), 0);
+    cr_assert_eq(shell("rm -r cut"), 0);
   }
 }
 
-static void set_mark(struct reversible *file, struct reversible_mark *mark)
+/* Where a kill between two renames may leave them. */
+Test(fields, that_a_kill_left_half_joined_or_half_removed_become_those_of_a_run_never_stopped)
 {
-  struct status status;
-  cr_assert(reversible_set_mark(file, mark, &status), "%s", status.message);
-}
-
-/* A process that writes marks and datasets until it is killed, prints the marks and copies the file at each mark. */
-static void write_until_killed(int marks)
-{
-  struct status status;
-  struct reversible file;
-  struct reversible_mark mark;
-  cr_assert(reversible_create(&file, "x.h5", "x.undo", &status), "%s", status.message);
-  add_sets(&file, 0, 20);
-  for (int k = 0; k < 2; k++) {
-    set_mark(&file, &mark);
-    cr_assert_eq(shell("cp x.h5 copy%d", k), 0);
-    cr_assert_eq(write(marks, &mark, sizeof mark), (ssize_t)sizeof mark);
-    add_sets(&file, 20 + 40 * k, 60 + 40 * k);
-  }
-  add_sets(&file, 100, 100000);
-}
-
-Test(fields, file_goes_back_to_its_last_two_marks_byte_for_byte_after_a_kill_at_any_moment)
-{
-  struct status status;
-  struct reversible file;
-  struct reversible_mark mark[2];
-  for (int k = 0; k < 24; k++) {
-    int ends[2];
-    cr_assert_eq(pipe(ends), 0);
-    const pid_t child = fork();
-    if (child == 0) {
-      write_until_killed(ends[1]);
-      _exit(0);
-    }
-    cr_assert_eq(read(ends[0], &mark[0], sizeof mark[0]), (ssize_t)sizeof mark[0]);
-    cr_assert_eq(read(ends[0], &mark[1], sizeof mark[1]), (ssize_t)sizeof mark[1]);
-    usleep((useconds_t)(1000 + 1709 * k));
-    kill(child, SIGKILL);
-    waitpid(child, NULL, 0);
-    close(ends[0]), close(ends[1]);
-    for (int m = 1; m >= 0; m--) {
-      cr_assert(reversible_return(&file, "x.h5", "x.undo", &mark[m], &status), "%s", status.message);
-      cr_expect_eq(shell("cmp x.h5 copy%d", m), 0, "kill %d, mark %d", k, m);
-      reversible_close(&file);
-    }
-    /* and continues from the first mark to the second */
-    cr_assert(reversible_return(&file, "x.h5", "x.undo", &mark[0], &status), "%s", status.message);
-    add_sets(&file, 20, 60);
-    cr_expect_eq(shell("cmp x.h5 copy1"), 0, "kill %d", k);
-    reversible_close(&file);
+  static const char *const left[] = {"printf half >cut/fields.h5.tmp", /* while joining */
+                                     "printf half >cut/fields/00003000.h5.tmp; cp cut/fields/00000100.h5 "
+                                     "cut/fields/00990000.h5", /* before the index had the last snapshot */
+                                     "cp whole/fields.h5 cut", /* joined, nothing removed */
+                                     "cp whole/fields.h5 cut; rm cut/fields/00000[0-9]00.h5" /* some removed */};
+  run_whole();
+  for (size_t k = 0; k < sizeof left / sizeof left[0]; k++) {
+    cut_after(12);
+    cr_assert_eq(shell("%s", left[k]), 0);
+    cr_expect_eq(shell("$DELBM resume cut --quiet >/dev/null 2>err && %s && ! ls cut/*.tmp 2>/dev/null", same), 0, "%s",
+                 left[k]);
+    cr_assert_eq(shell("rm -r cut"), 0);
   }
 }
 
-Test(fields, file_that_was_changed_is_refused)
+Test(fields, that_are_damaged_or_missing_are_named_on_resume_and_left_as_they_are)
 {
-  cr_assert_eq(shell("$DELBM run flow.yaml --set output.checkpoint.every=110 --quiet --out a >/dev/null; "
-                     "truncate -s 9 a/fields.h5; $DELBM resume a --steps 260 2>err"),
-               4);
-  cr_expect_eq(shell("grep -q 'a/fields.h5 has 9 bytes, fewer than' err"), 0);
+  static const struct {
+    const char *change, *said;
+  } all[] = {
+      {"rm cut/fields/00000040.h5", "cannot open cut/fields/00000040.h5: No such file or directory"},
+      {"rm cut/fields/00000040.h5; mkfifo cut/fields/00000040.h5", "00000040.h5: it is not a plain file"},
+      {"truncate -s 999 cut/fields/00000040.h5", "cut/fields/00000040.h5: .*step 40 is damaged or missing"},
+      {"truncate -s 9 cut/fields.h5", "cannot read cut/fields.h5: damaged, or not a file of HDF5"},
+      {"rm cut/fields.h5", "cannot open cut/fields.h5: No such file or directory"},
+      {"cp other/fields.h5 cut", "cut/fields.h5 has [0-9]* snapshots before step .* at the checkpoint: it was changed"},
+  };
+  cr_assert_eq(shell("$DELBM run flow.yaml --quiet --out other >/dev/null"), 0);
+  cut_after(12);
+  cr_assert_eq(shell("cp -r cut good"), 0);
+  for (size_t k = 0; k < sizeof all / sizeof all[0]; k++) {
+    cr_assert_eq(shell("rm -r cut; cp -r good cut; %s", all[k].change), 0);
+    cr_expect_eq(shell("timeout 20 $DELBM resume cut --quiet >/dev/null 2>err"), 4, "%s", all[k].change);
+    cr_expect_eq(shell("grep -q '%s' err || { cat err; false; }", all[k].said), 0);
+    cr_expect_eq(shell("cmp good/fields/00000050.h5 cut/fields/00000050.h5"), 0);
+  }
 }
 
-Test(fields, without_their_way_back_are_left_as_they_are)
+static long size_of(const char *path)
 {
-  cr_assert_eq(shell("$DELBM run flow.yaml --set output.checkpoint.every=70 --quiet --out a >/dev/null; "
-                     "cp a/fields.h5 .; truncate -s 9 a/fields.h5.undo; $DELBM resume a --steps 260 2>err"),
-               4);
-  cr_expect_eq(shell("grep -q 'a/fields.h5.undo has 9 bytes, fewer than' err && cmp fields.h5 a/fields.h5"), 0);
-  cr_assert_eq(shell("rm a/fields.h5.undo; $DELBM resume a --steps 260 2>err"), 4);
-  cr_expect_eq(shell("grep -q 'cannot open a/fields.h5.undo: No such file' err && cmp fields.h5 a/fields.h5"), 0);
+  struct stat found;
+  cr_assert_eq(stat(path, &found), 0);
+  return (long)found.st_size;
+}
+
+static void flip(const char *path, long at, int bit)
+{
+  FILE *file = fopen(path, "r+b");
+  cr_assert(file && fseek(file, at, SEEK_SET) == 0);
+  const int byte = fgetc(file);
+  cr_assert(fseek(file, at, SEEK_SET) == 0 && fputc(byte ^ 1 << bit, file) >= 0 && fclose(file) == 0);
+}
+
+/* What is not noticed must do no harm: bytes that mean nothing. */
+Test(fields, with_a_flipped_bit_anywhere_are_refused_or_have_the_values_they_had)
+{
+  cr_assert_eq(shell("$DELBM run flow.yaml --quiet --out a --set run.steps=150 --set output.checkpoint.every=110 "
+                     "--set domain.size=[125,100] --set output.fields.stride=7 >/dev/null && cp -r a good && "
+                     "$DELBM resume a --quiet --steps 160 >/dev/null && cp a/fields.h5 whole.h5"),
+               0);
+  const long size = size_of("good/fields.h5");
+  int refused = 0;
+  for (long k = 0; k < 60; k++) {
+    cr_assert_eq(shell("rm -r a; cp -r good a"), 0);
+    flip("a/fields.h5", k * 7919 * 13 % size, (int)(k % 8));
+    const int code = shell("$DELBM resume a --quiet --steps 160 >/dev/null 2>err");
+    cr_expect(code == 0 || code == 4, "%ld: %d", k, code);
+    refused += code == 4;
+    if (code == 0) cr_expect_eq(shell("cmp a/fields.h5 whole.h5"), 0, "bit of byte %ld", k * 7919 * 13 % size);
+  }
+  cr_expect_gt(refused, 20, "%d of 60", refused);
 }
 
 Test(fields, of_other_samples_are_refused_on_resume_by_key_and_equal_samples_continue)

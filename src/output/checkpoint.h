@@ -7,15 +7,14 @@
 #ifndef DELBM_OUTPUT_CHECKPOINT_H
 #define DELBM_OUTPUT_CHECKPOINT_H
 
-#include "output/reversible.h"
 #include "sim/simulation.h"
 
 /* What a run had written when the checkpoint was taken. */
 struct run_record {
-  int64_t table_bytes;           /* length of particles.csv */
-  struct reversible_mark fields; /* of fields.h5 */
-  double seconds;                /* wall time of the run */
-  double output;                 /* of which spent on output */
+  int64_t table_bytes; /* length of particles.csv */
+  int64_t snapshots;   /* in fields.h5, of steps before that of the checkpoint */
+  double seconds;      /* wall time of the run */
+  double output;       /* of which spent on output */
 };
 
 enum { CHECKPOINT_KERNEL = 32 };

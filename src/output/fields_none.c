@@ -7,7 +7,7 @@ static bool refuse(struct status *status)
 }
 
 bool fields_open(struct fields **fields, const struct scene *scene, const char *directory,
-                 const struct reversible_mark *mark, struct status *status)
+                 const struct fields_mark *mark, struct status *status)
 {
   (void)scene, (void)directory, (void)mark;
   *fields = NULL;
@@ -20,9 +20,15 @@ bool fields_write(struct fields *fields, struct simulation *simulation, struct s
   return refuse(status);
 }
 
-bool fields_set_mark(struct fields *fields, struct reversible_mark *mark, struct status *status)
+int64_t fields_count(const struct fields *fields)
 {
-  (void)fields, (void)mark;
+  (void)fields;
+  return 0;
+}
+
+bool fields_join(struct fields *fields, struct status *status)
+{
+  (void)fields;
   return refuse(status);
 }
 

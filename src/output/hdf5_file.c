@@ -1,125 +1,70 @@
 #include "output/hdf5_file.h"
 
-#include "output/file.h"
+#include <errno.h>
 
-#include <stdlib.h>
-
-/* What HDF5 knows of an open file: its own part first. */
-struct driven {
-  H5FD_t base;
-  struct hdf5_file *open;
-  haddr_t eoa; /* end of what HDF5 has given out */
-};
-
-static struct driven *driven_of(const H5FD_t *base)
+/* HDF5 tells errors by return values alone, and does nothing at the exit: of a file whose writes failed it would crash there. */
+static void start_hdf5(void)
 {
-  return (struct driven *)(void *)base;
+  H5dont_atexit();
+  H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
 }
 
-static H5FD_t *driver_open(const char *name, unsigned flags, hid_t access, haddr_t most)
+hid_t hdf5_timeless(hid_t class)
 {
-  (void)name, (void)flags, (void)most;
-  struct hdf5_file *const *open = H5Pget_driver_info(access);
-  struct driven *driven = open ? calloc(1, sizeof *driven) : NULL;
-  if (!driven) return NULL;
-  driven->open = *open;
-  return &driven->base;
+  const hid_t properties = H5Pcreate(class);
+  if (properties >= 0) H5Pset_obj_track_times(properties, false);
+  return properties;
 }
 
-static herr_t driver_close(H5FD_t *base)
+static hid_t create(const char *path)
 {
-  free(driven_of(base));
-  return 0;
-}
-
-/* As HDF5's own driver for plain files. */
-static herr_t driver_query(const H5FD_t *base, unsigned long *flags)
-{
-  (void)base;
-  *flags = H5FD_FEAT_AGGREGATE_METADATA | H5FD_FEAT_ACCUMULATE_METADATA | H5FD_FEAT_DATA_SIEVE |
-           H5FD_FEAT_AGGREGATE_SMALLDATA;
-  return 0;
-}
-
-static haddr_t driver_get_eoa(const H5FD_t *base, H5FD_mem_t type)
-{
-  (void)type;
-  return driven_of(base)->eoa;
-}
-
-static herr_t driver_set_eoa(H5FD_t *base, H5FD_mem_t type, haddr_t eoa)
-{
-  (void)type;
-  driven_of(base)->eoa = eoa;
-  return 0;
-}
-
-static haddr_t driver_get_eof(const H5FD_t *base, H5FD_mem_t type)
-{
-  (void)type;
-  return (haddr_t)driven_of(base)->open->file->length;
-}
-
-static herr_t driver_read(H5FD_t *base, H5FD_mem_t type, hid_t transfer, haddr_t from, size_t size, void *to)
-{
-  (void)type, (void)transfer;
-  return reversible_read(driven_of(base)->open->file, to, size, (int64_t)from) == 0 ? 0 : -1;
-}
-
-/* An error is kept for hdf5_close to tell: HDF5 cannot close a file whose writes fail. */
-static herr_t driver_write(H5FD_t *base, H5FD_mem_t type, hid_t transfer, haddr_t to, size_t size, const void *from)
-{
-  (void)type, (void)transfer;
-  struct hdf5_file *open = driven_of(base)->open;
-  if (open->error == 0) open->error = reversible_write(open->file, from, size, (int64_t)to);
-  return 0;
-}
-
-static herr_t driver_truncate(H5FD_t *base, hid_t transfer, hbool_t closing)
-{
-  (void)transfer, (void)closing;
-  struct hdf5_file *open = driven_of(base)->open;
-  const int64_t end = (int64_t)driven_of(base)->eoa;
-  if (open->error == 0 && open->file->length != end) open->error = reversible_set_length(open->file, end);
-  return 0;
-}
-
-static const H5FD_class_t driver = {
-    .name = "delbm",
-    .maxaddr = ((haddr_t)1 << 62) - 1,
-    .fc_degree = H5F_CLOSE_STRONG,
-    .fapl_size = sizeof(struct hdf5_file *),
-    .open = driver_open,
-    .close = driver_close,
-    .query = driver_query,
-    .get_eoa = driver_get_eoa,
-    .set_eoa = driver_set_eoa,
-    .get_eof = driver_get_eof,
-    .read = driver_read,
-    .write = driver_write,
-    .truncate = driver_truncate,
-    .fl_map = H5FD_FLMAP_DICHOTOMY,
-};
-
-bool hdf5_open(struct hdf5_file *open, struct reversible *file, struct status *status)
-{
-  H5dont_atexit(); /* all is closed by then, and of a file that could not be closed HDF5 would crash at the exit */
-  H5Eset_auto2(H5E_DEFAULT, NULL, NULL); /* errors are told by us */
-  *open = (struct hdf5_file){.file = file, .handle = -1, .driver = H5FDregister(&driver)};
-  const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
-  if (access >= 0 && open->driver >= 0 && H5Pset_driver(access, open->driver, &open) >= 0)
-    open->handle = file->length == 0 ? H5Fcreate(file->path, H5F_ACC_TRUNC, H5P_DEFAULT, access)
-                                     : H5Fopen(file->path, H5F_ACC_RDWR, access);
+  const hid_t creation = hdf5_timeless(H5P_FILE_CREATE), access = H5Pcreate(H5P_FILE_ACCESS);
+  hid_t handle = -1;
+  if (creation >= 0 && access >= 0 && H5Pset_fclose_degree(access, H5F_CLOSE_STRONG) >= 0 &&
+      H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110) >= 0)
+    handle = H5Fcreate(path, H5F_ACC_TRUNC, creation, access);
   if (access >= 0) H5Pclose(access);
-  if (open->handle >= 0) return true;
-  if (open->driver >= 0) H5FDunregister(open->driver);
-  return status_fail(status, DELBM_IO, "cannot open %s: HDF5 does not take it", file->path);
+  if (creation >= 0) H5Pclose(creation);
+  return handle;
 }
 
-bool hdf5_close(struct hdf5_file *open, struct status *status)
+bool hdf5_begin(struct hdf5_file *file, const char *path, struct status *status)
 {
-  const bool closed = H5Fclose(open->handle) >= 0;
-  H5FDunregister(open->driver);
-  if (open->error) return file_fail(status, "write", open->file->path, open->error);
-  return closed || status_fail(status, DELBM_IO, "cannot write %s: HDF5 does not close it", open->file->path);
+  start_hdf5();
+  if (!replacement_begin(&file->place, path, status)) return false;
+  errno = 0;
+  file->handle = create(file->place.temporary);
+  if (file->handle >= 0) return true;
+  file_fail(status, "create", path, errno);
+  replacement_abandon(&file->place);
+  return false;
+}
+
+/* HDF5 opened the temporary file by its path, so that this must still lead to the file that is renamed. */
+bool hdf5_commit(struct hdf5_file *file, struct status *status)
+{
+  struct replacement *place = &file->place;
+  if (H5Fclose(file->handle) < 0)
+    file_fail(status, "write", place->path, errno);
+  else if (file_stays(fileno(place->stream), place->temporary, status))
+    return replacement_commit_durably(place, status);
+  replacement_abandon(place);
+  return false;
+}
+
+void hdf5_abandon(struct hdf5_file *file)
+{
+  H5Fclose(file->handle);
+  replacement_abandon(&file->place);
+}
+
+hid_t hdf5_open(const char *path, struct status *status)
+{
+  start_hdf5();
+  FILE *plain = file_open_stream(path, status); /* tells what is no file, and why a file cannot be read */
+  if (!plain) return -1;
+  fclose(plain);
+  const hid_t handle = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+  if (handle < 0) status_fail(status, DELBM_IO, "cannot read %s: damaged, or not a file of HDF5", path);
+  return handle;
 }

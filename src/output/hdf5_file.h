@@ -1,26 +1,28 @@
-/* A reversible file as HDF5 reads and writes it.
+/* HDF5 files that are whole or absent: written as NAME.tmp, forced to the disk and renamed (struct replacement).
  *
- * HDF5 appends data, but it also rewrites its own indices, all over the file: one that a killed run leaves cannot be cut to
- * the length that it had at a checkpoint. So a driver of our own stands between the library and a file that can be taken
- * back to a mark (reversible.h). */
+ * The format is that of HDF5 1.10, whatever the library: its structures have checksums, and without times of creation the same
+ * content is the same bytes. */
 #ifndef DELBM_OUTPUT_HDF5_FILE_H
 #define DELBM_OUTPUT_HDF5_FILE_H
 
-#include "output/reversible.h"
+#include "output/file.h"
 
 #include <hdf5.h>
 
-/* An open file. */
 struct hdf5_file {
-  struct reversible *file;
+  struct replacement place;
   hid_t handle; /* for HDF5's calls */
-  hid_t driver;
-  int error; /* the first that a write has met; nothing is written after it */
 };
 
-/* Opens the file, as a new one if it is empty, and closes it, which brings all that was written into it. After a failure
- * of either the file is good for nothing but being taken back. */
-bool hdf5_open(struct hdf5_file *open, struct reversible *file, struct status *status);
-bool hdf5_close(struct hdf5_file *open, struct status *status);
+/* Either of commit and abandon ends what begin has begun; a file of that name stays until a commit has succeeded. */
+bool hdf5_begin(struct hdf5_file *file, const char *path, struct status *status);
+bool hdf5_commit(struct hdf5_file *file, struct status *status);
+void hdf5_abandon(struct hdf5_file *file);
+
+/* Opens a plain file for reading; less than 0 on failure. H5Fclose closes it. */
+hid_t hdf5_open(const char *path, struct status *status);
+
+/* Properties of a new object that has no times in it; H5Pclose releases them. */
+hid_t hdf5_timeless(hid_t class);
 
 #endif

@@ -7,10 +7,9 @@
 #include "output/csv.h"
 #include "output/fields.h"
 #include "output/file.h"
+#include "output/numbered.h"
 #include "output/picture.h"
 
-#include <ctype.h>
-#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <inttypes.h>
@@ -30,7 +29,7 @@ enum { CHECKPOINTS = 2 };
 
 struct recorder {
   const struct scene *scene;
-  char *case_path, *table_path, *frames_path, *summary_path, *checkpoint_path[CHECKPOINTS];
+  char *case_path, *table_path, *frames_path, *snapshots_path, *summary_path, *checkpoint_path[CHECKPOINTS];
   char *directory;
   int lock;          /* descriptor of the folder; -1: not open */
   struct csv *table; /* particles.csv */
@@ -55,14 +54,6 @@ static int64_t series_next(const struct series *series, int64_t step, int64_t en
   return left < end - step ? step + left : end;
 }
 
-/* True for NNNNNNNN.png (eight digits, more in long runs) and for what an interrupted replacement of one left. */
-static bool is_frame(const char *name)
-{
-  size_t digits = 0;
-  while (isdigit((unsigned char)name[digits])) digits++;
-  return digits >= 8 && (strcmp(name + digits, ".png") == 0 || strcmp(name + digits, ".png.tmp") == 0);
-}
-
 static bool remove_named(const char *directory, const char *name, struct status *status)
 {
   char *path = file_join(directory, name, status);
@@ -71,25 +62,11 @@ static bool remove_named(const char *directory, const char *name, struct status 
   return removed;
 }
 
-/* Removes the frames from a step on. */
-static bool remove_frames(const char *directory, int64_t step, struct status *status)
-{
-  DIR *listing = opendir(directory);
-  if (!listing) return errno == ENOENT || file_fail(status, "read folder", directory, errno);
-  bool removed = true;
-  for (struct dirent *entry; removed && (entry = readdir(listing));)
-    if (is_frame(entry->d_name) && strtoll(entry->d_name, NULL, 10) >= step)
-      removed = remove_named(directory, entry->d_name, status);
-  closedir(listing);
-  return removed;
-}
-
-/* Checkpoints and what takes fields.h5 back to them. */
 static bool remove_checkpoints(const struct recorder *recorder, struct status *status)
 {
   for (int k = 0; k < CHECKPOINTS; k++)
     if (!file_remove(recorder->checkpoint_path[k], status)) return false;
-  return remove_named(recorder->directory, "fields.h5.undo", status);
+  return true;
 }
 
 static bool remove_earlier_run(const struct recorder *recorder, bool *replaced, struct status *status)
@@ -97,7 +74,9 @@ static bool remove_earlier_run(const struct recorder *recorder, bool *replaced, 
   *replaced = access(recorder->summary_path, F_OK) == 0 || access(recorder->table_path, F_OK) == 0;
   return remove_checkpoints(recorder, status) && file_remove(recorder->summary_path, status) &&
          file_remove(recorder->table_path, status) && remove_named(recorder->directory, "fields.h5", status) &&
-         remove_named(recorder->directory, "fields.xdmf", status) && remove_frames(recorder->frames_path, 0, status);
+         remove_named(recorder->directory, "fields.xdmf", status) &&
+         numbered_remove_folder(recorder->snapshots_path, "h5", status) &&
+         numbered_remove(recorder->frames_path, 0, "png", status);
 }
 
 /* Two runs in one folder would write over each other. Where a file system knows no locks, none is held. */
@@ -130,7 +109,7 @@ static bool start_files(struct recorder *recorder, struct status *status)
   return (recorder->rows.every == 0 ||
           csv_open(&recorder->table, recorder->table_path, &recorder->scene->units, status)) &&
          (recorder->snapshots.every == 0 ||
-          fields_open(&recorder->fields, recorder->scene, recorder->directory, NULL, status)) &&
+          fields_open(&recorder->fields, recorder->scene, recorder->directory, &(struct fields_mark){0}, status)) &&
          prepare_frames(recorder, status);
 }
 
@@ -159,6 +138,7 @@ static bool prepare_paths(struct recorder *recorder, const char *directory, stru
   } paths[] = {{&recorder->case_path, "case.yaml"},
                {&recorder->table_path, "particles.csv"},
                {&recorder->frames_path, "frames"},
+               {&recorder->snapshots_path, "fields"},
                {&recorder->summary_path, "run.json"},
                {&recorder->checkpoint_path[0], "checkpoint.0"},
                {&recorder->checkpoint_path[1], "checkpoint.1"}};
@@ -241,11 +221,12 @@ static bool reopen_table(struct recorder *recorder, int64_t length, struct statu
   return csv_reopen(&recorder->table, recorder->table_path, &recorder->scene->units, length, status);
 }
 
-static bool reopen_fields(struct recorder *recorder, const struct reversible_mark *mark, struct status *status)
+/* Also where no more snapshots are wanted: those that there are become one file at the end of the run. */
+static bool reopen_fields(struct recorder *recorder, int64_t step, int64_t count, struct status *status)
 {
-  const struct reversible_mark *from = mark->file > 0 ? mark : NULL;
-  return recorder->snapshots.every == 0 ||
-         fields_open(&recorder->fields, recorder->scene, recorder->directory, from, status);
+  if (recorder->snapshots.every == 0 && (count == 0 || !FIELDS_SUPPORTED)) return true;
+  const struct fields_mark mark = {step, count};
+  return fields_open(&recorder->fields, recorder->scene, recorder->directory, &mark, status);
 }
 
 static bool take_up(struct recorder *recorder, struct simulation *simulation, struct resumption *resumption,
@@ -268,8 +249,9 @@ static bool take_up(struct recorder *recorder, struct simulation *simulation, st
   resumption->other_kernel = strcmp(head.kernel, simulation_kernel(simulation)) != 0;
   if (!checkpoint_read(recorder->checkpoint_path[chosen], simulation, &record, status) ||
       !file_remove(recorder->summary_path, status) || !write_case(recorder, status) ||
-      !reopen_table(recorder, record.table_bytes, status) || !reopen_fields(recorder, &record.fields, status) ||
-      !prepare_frames(recorder, status) || !remove_frames(recorder->frames_path, head.step, status))
+      !reopen_table(recorder, record.table_bytes, status) ||
+      !reopen_fields(recorder, head.step, record.snapshots, status) || !prepare_frames(recorder, status) ||
+      !numbered_remove(recorder->frames_path, head.step, "png", status))
     return false;
   recorder->next_checkpoint = !chosen;
   recorder->checkpoints.recorded = head.step;
@@ -320,9 +302,7 @@ static double take_values(const struct recorder *recorder, const struct discs *d
 static bool record_frame(struct recorder *recorder, struct simulation *simulation, struct status *status)
 {
   const struct scene *scene = recorder->scene;
-  char name[32];
-  snprintf(name, sizeof name, "%08" PRId64 ".png", simulation_step(simulation));
-  char *path = file_join(recorder->frames_path, name, status);
+  char *path = numbered_path(recorder->frames_path, simulation_step(simulation), "png", status);
   if (!path) return false;
   simulation_fields(simulation, NULL, recorder->ux, recorder->uy);
   struct picture picture = {.size = {scene->domain.size[0], scene->domain.size[1]},
@@ -343,7 +323,7 @@ static bool write_checkpoint(struct recorder *recorder, struct simulation *simul
 {
   struct run_record record = {.seconds = recorder_elapsed(recorder), .output = recorder->seconds};
   if (recorder->table && !csv_sync(recorder->table, &record.table_bytes, status)) return false;
-  if (recorder->fields && !fields_set_mark(recorder->fields, &record.fields, status)) return false;
+  if (recorder->fields) record.snapshots = fields_count(recorder->fields);
   if (!file_stays(recorder->lock, recorder->directory, status)) return false; /* right before the path is taken */
   if (!checkpoint_write(recorder->checkpoint_path[recorder->next_checkpoint], recorder->fingerprint, simulation,
                         &record, status))
@@ -388,6 +368,7 @@ static bool record_due(struct recorder *recorder, struct simulation *simulation,
   if (frame) recorder->frames.recorded = step;
   if (snapshot && !fields_write(recorder->fields, simulation, status)) return false;
   if (snapshot) recorder->snapshots.recorded = step;
+  if (last && recorder->fields && !fields_join(recorder->fields, status)) return false;
   /* without `every` there is a checkpoint only of an interrupted run, which has now ended */
   return !last || recorder->checkpoints.every > 0 || remove_checkpoints(recorder, status);
 }
@@ -436,6 +417,7 @@ void recorder_destroy(struct recorder *recorder)
   free(recorder->case_path);
   free(recorder->table_path);
   free(recorder->frames_path);
+  free(recorder->snapshots_path);
   free(recorder->summary_path);
   for (int k = 0; k < CHECKPOINTS; k++) free(recorder->checkpoint_path[k]);
   if (recorder->lock >= 0) close(recorder->lock);

@@ -36,7 +36,7 @@ bool recorder_record(struct recorder *recorder, struct simulation *simulation, b
 /* Writes a checkpoint at the simulation's step, in place of the older of the two. */
 bool recorder_checkpoint(struct recorder *recorder, struct simulation *simulation, struct status *status);
 
-/* Closes particles.csv and fields.h5. */
+/* closes particles.csv and fields.xdmf. */
 bool recorder_finish(struct recorder *recorder, struct status *status);
 
 /* Writes run.json. */

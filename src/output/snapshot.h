@@ -1,0 +1,29 @@
+/* One snapshot as a group of an HDF5 file, named by its step in eight digits or more; fields.h says what is in it. */
+#ifndef DELBM_OUTPUT_SNAPSHOT_H
+#define DELBM_OUTPUT_SNAPSHOT_H
+
+#include "output/points.h"
+#include "sim/sample.h"
+
+#include <hdf5.h>
+
+struct snapshot {
+  int64_t step;
+  size_t points; /* discs and images */
+};
+
+enum { SNAPSHOT_NAME = 32 };
+void snapshot_name(char name[SNAPSHOT_NAME], int64_t step);
+
+/* The grid of the samples, as attributes of the root. False, like the next two, when HDF5 fails. */
+bool snapshot_write_grid(hid_t root, const int domain_size[2], const struct sample_grid *grid);
+bool snapshot_read_grid(hid_t root, const struct snapshot *snapshot, struct sample_grid *grid);
+
+bool snapshot_write(hid_t root, int64_t step, const struct sample_grid *grid, const struct sample *sample,
+                    const struct points *points);
+
+/* Reads all data of the snapshot of that step, which compares their checksums, and counts the points. Fails with the path, that
+ * of the file, and the name of what is damaged or missing. */
+bool snapshot_check(hid_t root, const char *path, struct snapshot *snapshot, struct status *status);
+
+#endif
