@@ -1,7 +1,7 @@
 /* Fault injection. Linked into the programs `delbm-faulty` and `host-faulty`, this file replaces functions of the C
  * library for the program and for its libraries. DELBM_FAIL="memory 17" makes the 17th allocation after the start of
  * main fail; likewise `thread`, `file` and the name of a function, "lseek 2"; with "memory 17 on" also all later
- * allocations. A call that is made to fail is named in the file DELBM_FAILED_AT. DELBM_LOCALE sets the locale of the
+ * allocations, and with "memory 17 kill" the process is killed in place of the call. A call that is made to fail is named in the file DELBM_FAILED_AT. DELBM_LOCALE sets the locale of the
  * process. The installed delbm contains none of this. */
 #include "faulty.h"
 
@@ -12,6 +12,7 @@
 #include <fcntl.h>
 #include <locale.h>
 #include <pthread.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stdatomic.h>
 #include <stdio.h>
@@ -26,7 +27,7 @@ enum kind { KIND_NONE, KIND_MEMORY, KIND_THREAD, KIND_FILE };
 static enum kind chosen;
 static char chosen_name[16];
 static long chosen_call;
-static bool lasting;
+static bool lasting, killing;
 static atomic_long calls;
 static int report = -1;
 
@@ -41,6 +42,7 @@ static bool is_to_fail(enum kind kind, const char *name)
   const long call = atomic_fetch_add(&calls, 1) + 1;
   if (call < chosen_call || (call > chosen_call && !lasting)) return false;
   if (call == chosen_call && report >= 0) dprintf(report, "%s\n", name);
+  if (killing) raise(SIGKILL);
   return true;
 }
 
@@ -76,13 +78,14 @@ static bool is_memory_to_fail(const char *name, const void *caller)
 void faulty_begin(const char *wish)
 {
   static const char *const names[] = {"none", "memory", "thread", "file"};
-  char on[4] = "", name[sizeof chosen_name];
+  char then[5] = "", name[sizeof chosen_name];
   long call = 0;
-  if (sscanf(wish, "%15s %ld %3s", name, &call, on) < 2) return;
+  if (sscanf(wish, "%15s %ld %4s", name, &call, then) < 2) return;
   memcpy(chosen_name, name, sizeof chosen_name);
   chosen_call = call;
   atomic_store(&calls, 0);
-  lasting = strcmp(on, "on") == 0;
+  lasting = strcmp(then, "on") == 0;
+  killing = strcmp(then, "kill") == 0;
   for (int kind = KIND_MEMORY; kind <= KIND_FILE; kind++)
     if (strcmp(chosen_name, names[kind]) == 0) chosen = (enum kind)kind;
 }
@@ -254,6 +257,18 @@ int renameat(int from_folder, const char *from, int to_folder, const char *to)
 {
   ORIGINAL(renameat)
   return is_to_fail(KIND_FILE, "renameat") ? no_room() : original(from_folder, from, to_folder, to);
+}
+
+int unlink(const char *path)
+{
+  ORIGINAL(unlink)
+  return is_to_fail(KIND_FILE, "unlink") ? no_room() : original(path);
+}
+
+int rmdir(const char *path)
+{
+  ORIGINAL(rmdir)
+  return is_to_fail(KIND_FILE, "rmdir") ? no_room() : original(path);
 }
 
 int fsync(int descriptor)

@@ -4,6 +4,10 @@
  * nothing leaks. By default a sample of the calls; DELBM_EVERY_CALL=1 tries all. */
 #include "shell.h"
 
+#ifdef DELBM_HDF5
+#include <hdf5.h>
+#endif
+
 static const char *const small = "domain: {size: [40, 30], left: periodic, right: periodic}\n"
                                  "fluid: {viscosity: 0.05}\n"
                                  "particles:\n"
@@ -157,7 +161,52 @@ Test(failures_of_fields, of_any_file_end_a_run_and_resume_with_words)
   try_calls(&(struct trial){"file", "resume cut --steps 9 --quiet", "cp -r part cut", no_file, 149}, "");
 }
 
-/* A sample may miss the few calls of the rollback of fields.h5 to a checkpoint. */
+/* True if every snapshot that fields.h5 names can be opened and has its values of rho. */
+static bool all_are_readable(const char *path)
+{
+  H5G_info_t group;
+  const hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+  bool readable = file >= 0 && H5Gget_info(file, &group) >= 0;
+  for (hsize_t k = 0; readable && k < group.nlinks; k++) {
+    char name[64];
+    static double rho[40 * 30];
+    const ssize_t length = H5Lget_name_by_idx(file, ".", H5_INDEX_NAME, H5_ITER_INC, k, name, 40, H5P_DEFAULT);
+    snprintf(name + (length > 0 ? length : 0), 5, "/rho");
+    const hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
+    readable = set >= 0 && H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, rho) >= 0;
+    if (set >= 0) H5Dclose(set);
+  }
+  if (file >= 0) H5Fclose(file);
+  return readable;
+}
+
+/* Kills a command at one call after the other, with those in which snapshots are joined and their files removed. */
+static void kill_at_calls(const char *command, const char *before, int stride)
+{
+  int call = 1;
+  H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+  for (;; call += getenv("DELBM_EVERY_CALL") ? 1 : stride) {
+    if (shell("rm -rf cut at; %s; DELBM_FAILED_AT=at DELBM_FAIL='file %d kill' $DELBM_FAULTY %s >out 2>err", before,
+              call, command) == 0)
+      break;
+    if (access("cut/fields.h5", F_OK) == 0)
+      cr_expect(all_are_readable("cut/fields.h5"), "call %d of %s", call, command);
+    cr_expect_eq(shell("%s ls cut/checkpoint.[01] >/dev/null 2>&1 && go='resume cut --steps 9' || "
+                       "go='run small.yaml --out cut --set output.fields.every=2'; $DELBM $go --quiet >/dev/null && "
+                       "same cut && test ! -e cut/fields",
+                       functions),
+                 0, "call %d of %s", call, command);
+  }
+  cr_expect_gt(call, 500);
+}
+
+Test(failures_of_fields, a_kill_at_any_call_leaves_snapshots_that_can_be_read_and_resumed)
+{
+  kill_at_calls("run small.yaml --quiet --out cut --set output.fields.every=2", "true", 113);
+  kill_at_calls("resume cut --steps 9 --quiet", "cp -r part cut", 167);
+}
+
+/* A sample may miss the few seeks of a resumed run. */
 Test(failures_of_fields, of_any_seek_leave_what_can_be_resumed)
 {
   try_calls(&(struct trial){"lseek", "resume cut --steps 9 --quiet", "cp -r part cut", no_file, 1}, "");

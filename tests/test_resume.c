@@ -402,7 +402,7 @@ Test(resume, refuses_what_is_damaged_or_foreign_and_says_why)
                      "2>/dev/null; $DELBM resume cut 2>err"),
                4);
   cr_expect_eq(shell("grep -q 'cut/checkpoint.0: of format 63; this delbm .* reads format [0-9]*' err"), 0);
-  /* the table was changed behind our back */
+  /* the table was truncated */
   cr_expect_eq(shell("cp good/checkpoint.0 cut/; truncate -s 100 cut/particles.csv; $DELBM resume cut 2>err"), 4);
   cr_expect_eq(shell("grep -q 'cut/particles.csv has 100 bytes, fewer than' err"), 0);
 }

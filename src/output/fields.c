@@ -80,23 +80,14 @@ static bool write_index(const struct fields *f, struct status *status)
   return finish(&file, write_links(f, file.handle) || file_fail(status, "write", f->path, errno), status);
 }
 
-/* Copies the group of a snapshot from one file to another. Checksums are copied with the data. */
-static bool copy_snapshot(hid_t from, hid_t to, int64_t step, const char *path, struct status *status)
-{
-  char name[SNAPSHOT_NAME];
-  snapshot_name(name, step);
-  errno = 0;
-  return H5Ocopy(from, name, to, name, H5P_DEFAULT, H5P_DEFAULT) >= 0 || file_fail(status, "write", path, errno);
-}
-
 /* A snapshot of its own file from one in a file of all. */
 static bool extract(const struct fields *f, hid_t all, int64_t step, const char *path, struct status *status)
 {
   struct hdf5_file file;
   if (!hdf5_begin(&file, path, status)) return false;
   const bool written =
-      snapshot_write_grid(file.handle, f->scene->domain.size, &f->grid) || file_fail(status, "write", path, errno);
-  return finish(&file, written && copy_snapshot(all, file.handle, step, path, status), status);
+      snapshot_write_grid(file.handle, f->scene->domain.size, &f->grid) && snapshot_copy(all, file.handle, step);
+  return finish(&file, written || file_fail(status, "write", path, errno), status);
 }
 
 /* The file that an external link leads to must be there, and a file: HDF5 would wait for a FIFO. */
@@ -243,7 +234,8 @@ static bool copy_file(const struct fields *f, hid_t to, int64_t step, struct sta
 {
   char *path = numbered_path(f->folder, step, "h5", status);
   const hid_t from = path ? hdf5_open(path, status) : -1;
-  const bool copied = from >= 0 && copy_snapshot(from, to, step, f->path, status);
+  errno = 0;
+  const bool copied = from >= 0 && (snapshot_copy(from, to, step) || file_fail(status, "write", f->path, errno));
   if (from >= 0) H5Fclose(from);
   free(path);
   return copied;

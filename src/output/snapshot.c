@@ -203,3 +203,74 @@ bool snapshot_check(hid_t root, const char *path, struct snapshot *snapshot, str
   status->code = DELBM_OK;
   return read_object(root, name, NULL, &check) >= 0;
 }
+
+/* The bytes of a chunk, compressed as they are, from one data set to another. */
+static bool copy_chunk(hid_t from, hid_t to, const hsize_t *at)
+{
+  struct status ignored;
+  hsize_t size = 0;
+  uint32_t filters = 0;
+  if (H5Dget_chunk_storage_size(from, at, &size) < 0) return false;
+  void *bytes = memory_allocate((size_t)size, 1, "a chunk of a snapshot", &ignored);
+  const bool copied = bytes && H5Dread_chunk(from, H5P_DEFAULT, at, &filters, bytes) >= 0 &&
+                      H5Dwrite_chunk(to, H5P_DEFAULT, filters, at, (size_t)size, bytes) >= 0;
+  free(bytes);
+  return copied;
+}
+
+/* All chunks; a third index of cells and a second of points, their components, lie in one. */
+static bool copy_chunks(hid_t from, hid_t to, hid_t space, hid_t properties)
+{
+  hsize_t size[3] = {1, 1, 1}, chunk[3] = {1, 1, 1}, at[3] = {0};
+  if (H5Sget_simple_extent_dims(space, size, NULL) < 0 || H5Pget_chunk(properties, 3, chunk) < 0) return false;
+  for (at[0] = 0; at[0] < size[0]; at[0] += chunk[0])
+    for (at[1] = 0; at[1] < size[1]; at[1] += chunk[1])
+      if (!copy_chunk(from, to, at)) return false;
+  return true;
+}
+
+static bool copy_set(hid_t from, hid_t group, const char *name)
+{
+  const hid_t type = H5Dget_type(from), space = H5Dget_space(from), properties = H5Dget_create_plist(from);
+  const hid_t to = type < 0 || space < 0 || properties < 0
+                       ? -1
+                       : H5Dcreate2(group, name, type, space, H5P_DEFAULT, properties, H5P_DEFAULT);
+  const bool copied = to >= 0 && copy_chunks(from, to, space, properties);
+  const bool closed = to >= 0 && H5Dclose(to) >= 0;
+  if (properties >= 0) H5Pclose(properties);
+  if (space >= 0) H5Sclose(space);
+  if (type >= 0) H5Tclose(type);
+  return copied && closed;
+}
+
+static herr_t copy_object(hid_t group, const char *name, const H5L_info_t *info, void *to);
+
+static bool copy_group(hid_t from, hid_t parent, const char *name)
+{
+  int64_t step;
+  hid_t to = create_group(parent, name);
+  const bool copied =
+      to >= 0 &&
+      (!H5Aexists(from, "step") || (read_numbers(from, "step", &step) && write_numbers(to, "step", 1, &step))) &&
+      H5Literate(from, H5_INDEX_NAME, H5_ITER_INC, NULL, copy_object, &to) >= 0;
+  return to >= 0 && H5Gclose(to) >= 0 && copied;
+}
+
+static herr_t copy_object(hid_t group, const char *name, const H5L_info_t *info, void *to)
+{
+  (void)info;
+  const hid_t *into = to;
+  const hid_t object = H5Oopen(group, name, H5P_DEFAULT);
+  const H5I_type_t type = object < 0 ? H5I_BADID : H5Iget_type(object);
+  const bool copied =
+      type == H5I_DATASET ? copy_set(object, *into, name) : type == H5I_GROUP && copy_group(object, *into, name);
+  if (object >= 0) H5Oclose(object);
+  return copied ? 0 : -1;
+}
+
+bool snapshot_copy(hid_t from, hid_t to, int64_t step)
+{
+  char name[SNAPSHOT_NAME];
+  snapshot_name(name, step);
+  return copy_object(from, name, NULL, &to) >= 0;
+}

@@ -22,6 +22,10 @@ bool snapshot_read_grid(hid_t root, const struct snapshot *snapshot, struct samp
 bool snapshot_write(hid_t root, int64_t step, const struct sample_grid *grid, const struct sample *sample,
                     const struct points *points);
 
+/* Copies the snapshot of that step from one root to another, compressed as it is. In place of H5Ocopy, which crashes where a
+ * write fails (HDF5 1.10.8). */
+bool snapshot_copy(hid_t from, hid_t to, int64_t step);
+
 /* Reads all data of the snapshot of that step, which compares their checksums, and counts the points. Fails with the path, that
  * of the file, and the name of what is damaged or missing. */
 bool snapshot_check(hid_t root, const char *path, struct snapshot *snapshot, struct status *status);
