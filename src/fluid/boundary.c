@@ -1,219 +1,136 @@
 #include "fluid/boundary.h"
 
 #include "base/memory.h"
+#include "fluid/side_rules.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 /* Populations that enter through a side. */
-static const int inward[SIDE_COUNT][3] = {
+static const int inward[SIDE_COUNT][SIDE_LINKS] = {
     [SIDE_LEFT] = {1, 5, 8}, [SIDE_RIGHT] = {3, 6, 7}, [SIDE_BOTTOM] = {2, 5, 6}, [SIDE_TOP] = {4, 7, 8}};
 
-/* The state of a ghost cell of an outlet (boundary.h). */
-struct outlet_cell {
-  double drift; /* d */
-  double cut;   /* density of the source less that of the ghost */
-  double last;  /* 3 (e - j) of the source after the last step */
-};
-
-static bool is_end(enum side_name side)
+/* The population whose velocity is that of i with the chosen components reversed. */
+static int reversed(int i, const bool components[2])
 {
-  return side == SIDE_BOTTOM || side == SIDE_TOP;
+  const int ex = components[0] ? -d2q9_ex[i] : d2q9_ex[i], ey = components[1] ? -d2q9_ey[i] : d2q9_ey[i];
+  int m = 0;
+  while (d2q9_ex[m] != ex || d2q9_ey[m] != ey) m++;
+  return m;
 }
 
-/* Cells along a side. */
-static int side_length(const struct boundary *b, enum side_name side)
+static struct side_link link_of(const struct side_rule *rule, enum side_name side, int j)
 {
-  return b->size[is_end(side) ? 0 : 1];
-}
-
-void boundary_corner_velocity(const struct side *x, const struct side *y, double velocity[2])
-{
-  const bool out_x = x->type == SIDE_OUTLET, out_y = y->type == SIDE_OUTLET;
-  velocity[0] = out_x ? out_y ? NAN : y->velocity[0] : x->velocity[0];
-  velocity[1] = out_y ? out_x ? NAN : x->velocity[1] : y->velocity[1];
-}
-
-/* c of a wall or inlet. */
-static void set_momentum(struct boundary *b, enum side_name side)
-{
-  for (int j = 0; j < 3; j++)
-    for (int k = 0; k < side_length(b, side); k++)
-      b->c[side][j][k] = d2q9_wall_momentum(inward[side][j], b->side[side].velocity);
+  const int axis = side_axis(side), i = inward[side][j], e[2] = {d2q9_ex[i], d2q9_ey[i]};
+  const bool components[2] = {rule->imposes[axis], rule->imposes[!axis]};
+  return (struct side_link){
+      .i = i, .m = reversed(i, components), .along = e[!axis], .shift = rule->imposes[1] ? 0 : e[!axis]};
 }
 
 static bool create_side(struct boundary *b, enum side_name side, struct status *status)
 {
-  const enum side_type type = b->side[side].type;
-  const size_t n = (size_t)side_length(b, side);
-  if (type == SIDE_PERIODIC) return true;
-  for (int j = 0; j < 3; j++) {
-    b->c[side][j] = memory_allocate(n, sizeof *b->c[side][j], "the links of a side", status);
+  const struct side_rule *rule = b->rule[side];
+  const int n = boundary_length(b, side);
+  for (int j = 0; j < SIDE_LINKS; j++) {
+    b->link[side][j] = link_of(rule, side, j);
+    b->c[side][j] = memory_allocate((size_t)n, sizeof *b->c[side][j], "the links of a side", status);
     if (!b->c[side][j]) return false;
   }
-  if (type != SIDE_OUTLET) {
-    set_momentum(b, side);
-    return true;
-  }
-  b->ghost[side] = memory_allocate(n, sizeof *b->ghost[side], "the cells of an outlet", status);
-  return b->ghost[side] != NULL;
+  if (rule->state > 0 && !(b->state[side] = memory_allocate((size_t)n, rule->state, "the cells of a side", status)))
+    return false;
+  if (rule->fill) rule->fill(b, side, 0, n);
+  return true;
 }
 
 bool boundary_create(struct boundary *b, const struct side side[SIDE_COUNT], int nx, int ny, struct status *status)
 {
   *b = (struct boundary){.side = side, .size = {nx, ny}, .hold = boundary_outlet_hold(nx, ny)};
-  for (enum side_name name = 0; name < SIDE_COUNT; name++)
-    if (!create_side(b, name, status)) {
-      boundary_destroy(b);
-      return false;
-    }
+  for (enum side_name name = 0; name < SIDE_COUNT; name++) {
+    b->rule[name] = side_rule_of(side[name].type);
+    b->ring[side_axis(name)] = b->rule[name]->joins;
+    if (create_side(b, name, status)) continue;
+    boundary_destroy(b);
+    return false;
+  }
   return true;
 }
 
 void boundary_destroy(struct boundary *b)
 {
   for (enum side_name side = 0; side < SIDE_COUNT; side++) {
-    for (int j = 0; j < 3; j++) free(b->c[side][j]);
-    free(b->ghost[side]);
+    for (int j = 0; j < SIDE_LINKS; j++) free(b->c[side][j]);
+    free(b->state[side]);
   }
   *b = (struct boundary){0};
-}
-
-/* c of an outlet, from the state of its ghost cells. */
-static void set_cut(struct boundary *b, enum side_name side, int k0, int k1)
-{
-  for (int j = 0; j < 3; j++)
-    for (int k = k0; k < k1; k++) b->c[side][j][k] = -d2q9_weight[inward[side][j]] * b->ghost[side][k].cut;
 }
 
 bool boundary_store(struct boundary *b, struct store *store, struct status *status)
 {
   for (enum side_name side = 0; side < SIDE_COUNT; side++) {
-    const int n = side_length(b, side);
-    if (b->side[side].type != SIDE_OUTLET) continue;
-    if (!store_bytes(store, b->ghost[side], (size_t)n * sizeof *b->ghost[side], status)) return false;
-    set_cut(b, side, 0, n);
+    const struct side_rule *rule = b->rule[side];
+    const int n = boundary_length(b, side);
+    if (rule->state == 0) continue;
+    if (!store_bytes(store, b->state[side], (size_t)n * rule->state, status)) return false;
+    if (rule->fill) rule->fill(b, side, 0, n);
   }
   return true;
-}
-
-/* Cell k of a side. */
-static void side_cell(const struct boundary *b, enum side_name side, int k, int cell[2])
-{
-  const int axis = is_end(side) ? 1 : 0;
-  cell[axis] = side == SIDE_LEFT || side == SIDE_BOTTOM ? 0 : b->size[axis] - 1;
-  cell[!axis] = k;
-}
-
-/* slot[to + k] = slot[from + k] + c[k] for k < n. */
-static void move(struct populations *p, size_t to, size_t from, int n, const double *c)
-{
-  if (p->precision == PRECISION_DOUBLE) {
-    double *slot = p->block;
-    for (int k = 0; k < n; k++) slot[to + (size_t)k] = slot[from + (size_t)k] + c[k];
-  } else {
-    float *slot = p->block;
-    for (int k = 0; k < n; k++) slot[to + (size_t)k] = slot[from + (size_t)k] + (float)c[k];
-  }
-}
-
-/* Cells target .. target + n - 1 of a side receive by link j what cells source .. source + n - 1 sent as population m. */
-static void transfer(struct boundary *b, struct populations *p, enum side_name side, int j, int m, int source,
-                     int target, int n)
-{
-  int from[2], to[2];
-  if (n <= 0) return;
-  side_cell(b, side, source, from);
-  side_cell(b, side, target, to);
-  move(p, populations_received(p, inward[side][j], to[0], to[1]), populations_sent(p, m, from[0], from[1]), n,
-       b->c[side][j] + source);
-}
-
-/* Bounce-back of cells k0 .. k1 - 1, but for the link out of a corner. */
-static void bounce_back(struct boundary *b, struct populations *p, enum side_name side, int k0, int k1)
-{
-  const bool ring = b->side[is_end(side) ? SIDE_LEFT : SIDE_BOTTOM].type == SIDE_PERIODIC;
-  for (int j = 0; j < 3; j++) {
-    const int i = inward[side][j], along = is_end(side) ? d2q9_ex[i] : d2q9_ey[i];
-    const int first = !ring && along > 0 && k0 == 0 ? 1 : k0;
-    const int end = !ring && along < 0 && k1 == side_length(b, side) ? k1 - 1 : k1;
-    transfer(b, p, side, j, d2q9_opposite[i], first, first, end - first);
-  }
-}
-
-/* The ghost cells beside cells k0 .. k1 - 1 send to the edge. */
-static void send_from_ghosts(struct boundary *b, struct populations *p, enum side_name side, int k0, int k1)
-{
-  const bool ring = b->side[is_end(side) ? SIDE_LEFT : SIDE_BOTTOM].type == SIDE_PERIODIC;
-  const int n = side_length(b, side);
-  for (int j = 0; j < 3; j++) {
-    const int i = inward[side][j], along = is_end(side) ? d2q9_ex[i] : d2q9_ey[i];
-    const bool over_low = along < 0 && k0 == 0, over_high = along > 0 && k1 == n;
-    const int first = k0 + over_low, end = k1 - over_high;
-    transfer(b, p, side, j, i, first, first + along, end - first);
-    if (ring && over_low) transfer(b, p, side, j, i, 0, n - 1, 1);
-    if (ring && over_high) transfer(b, p, side, j, i, n - 1, 0, 1);
-  }
-}
-
-struct edge_moments {
-  double excess, outwards; /* over the reference density; momentum along the outward normal */
-};
-
-/* Moments of cell k, from what it has sent or, with `coming`, from what it is about to collide. */
-static struct edge_moments edge_moments(const struct boundary *b, const struct populations *p, enum side_name side,
-                                        int k, bool coming)
-{
-  const int *in = inward[side], axis = is_end(side) ? 1 : 0;
-  struct edge_moments m = {0};
-  int cell[2];
-  side_cell(b, side, k, cell);
-  for (int i = 0; i < Q; i++) {
-    const int e[2] = {d2q9_ex[i], d2q9_ey[i]}, inwards[2] = {d2q9_ex[in[0]], d2q9_ey[in[0]]};
-    const size_t slot = coming ? populations_source(p, i, cell[0], cell[1]) : populations_sent(p, i, cell[0], cell[1]);
-    const double g = populations_get(p, slot);
-    m.excess += g;
-    m.outwards -= e[axis] * inwards[axis] * g;
-  }
-  return m;
 }
 
 void boundary_reset(struct boundary *b, const struct populations *p)
 {
   for (enum side_name side = 0; side < SIDE_COUNT; side++) {
-    if (b->side[side].type != SIDE_OUTLET) continue;
-    for (int k = 0; k < side_length(b, side); k++) {
-      const struct edge_moments m = edge_moments(b, p, side, k, true);
-      b->ghost[side][k] = (struct outlet_cell){.last = 3 * (m.excess - m.outwards)};
-    }
-    set_cut(b, side, 0, side_length(b, side));
+    const struct side_rule *rule = b->rule[side];
+    if (rule->reset) rule->reset(b, p, side);
+    if (rule->reset && rule->fill) rule->fill(b, side, 0, boundary_length(b, side));
   }
 }
 
-/* The step of the ghost cells beside cells k0 .. k1 - 1. */
-static void update_cut(struct boundary *b, const struct populations *p, enum side_name side, int k0, int k1)
+/* slot[to + k] = a slot[from + k] + c[k] for k < n. */
+static void move(struct populations *p, size_t to, size_t from, int n, double a, const double *c)
 {
-  const double h = b->hold;
-  for (int k = k0; k < k1; k++) {
-    struct outlet_cell *ghost = &b->ghost[side][k];
-    const struct edge_moments m = edge_moments(b, p, side, k, false);
-    const double now = 3 * (m.excess - m.outwards);
-    ghost->drift += h / 6 * (now - ghost->last + ghost->cut - ghost->drift);
-    ghost->cut = h * (m.excess - ghost->cut / 2) + ghost->drift;
-    ghost->last = now;
+  if (p->precision == PRECISION_DOUBLE) {
+    double *slot = p->block;
+    for (int k = 0; k < n; k++) slot[to + (size_t)k] = a * slot[from + (size_t)k] + c[k];
+  } else {
+    float *slot = p->block;
+    for (int k = 0; k < n; k++) slot[to + (size_t)k] = (float)a * slot[from + (size_t)k] + (float)c[k];
   }
-  set_cut(b, side, k0, k1);
 }
 
-/* What cell (x, y) at the left or right end of its row sends out comes in at the other end. */
-static void wrap(struct populations *p, int x, int y)
+static enum side_name opposite(enum side_name side)
 {
-  static const double nothing = 0;
-  const int *out = inward[x == 0 ? SIDE_RIGHT : SIDE_LEFT], far = p->nx - 1 - x;
-  for (int j = 0; j < 3; j++) {
-    const int i = out[j], to_y = y + d2q9_ey[i];
-    if (!p->periodic_y && (to_y < 0 || to_y >= p->ny)) continue; /* a link of the bottom or top */
-    move(p, populations_received(p, i, far, populations_row(p, to_y)), populations_sent(p, i, x, y), 1, &nothing);
+  return side_is_high(side) ? side - 1 : side + 1;
+}
+
+/* Cells target .. target + n - 1 of a side receive by link j what cells source .. source + n - 1 sent. */
+static void transfer(struct boundary *b, struct populations *p, enum side_name side, int j, int source, int target,
+                     int n)
+{
+  const struct side_link *link = &b->link[side][j];
+  int from[2], to[2];
+  if (n <= 0) return;
+  boundary_cell(b, b->rule[side]->joins ? opposite(side) : side, source, from);
+  boundary_cell(b, side, target, to);
+  move(p, populations_received(p, link->i, to[0], to[1]), populations_sent(p, link->m, from[0], from[1]), n,
+       b->rule[side]->a, b->c[side][j] + source);
+}
+
+/* The links of one side whose sources are cells k0 .. k1 - 1, but for those out of a corner. `step`: these have just taken a
+ * step. */
+static void side_links(struct boundary *b, struct populations *p, enum side_name side, int k0, int k1, bool step)
+{
+  const struct side_rule *rule = b->rule[side];
+  const bool ring = b->ring[!side_axis(side)];
+  const int n = boundary_length(b, side);
+  if (step && rule->step) rule->step(b, p, side, k0, k1);
+  if (step && rule->step) rule->fill(b, side, k0, k1);
+  for (int j = 0; j < SIDE_LINKS; j++) {
+    const int along = b->link[side][j].along, shift = b->link[side][j].shift;
+    const int low = (!ring && along > 0) - shift, high = n - (!ring && along < 0) - shift; /* of the sources */
+    const int first = k0 > low ? k0 : low, end = k1 < high ? k1 : high;
+    transfer(b, p, side, j, first, first + shift, end - first);
+    if (ring && shift < 0 && k0 == 0) transfer(b, p, side, j, 0, n - 1, 1);
+    if (ring && shift > 0 && k1 == n) transfer(b, p, side, j, n - 1, 0, 1);
   }
 }
 
@@ -221,40 +138,35 @@ static void wrap(struct populations *p, int x, int y)
 static void corner_link(struct boundary *b, struct populations *p, enum side_name x_side, enum side_name y_side)
 {
   static const int diagonal[2][2] = {{5, 8}, {6, 7}};
+  const enum side_name side[2] = {x_side, y_side};
   const int i = diagonal[x_side == SIDE_RIGHT][y_side == SIDE_TOP];
-  const int x = x_side == SIDE_LEFT ? 0 : p->nx - 1, y = y_side == SIDE_BOTTOM ? 0 : p->ny - 1;
-  const bool ghost = b->ghost[x_side] && b->ghost[y_side];
-  double velocity[2];
-  boundary_corner_velocity(&b->side[x_side], &b->side[y_side], velocity);
-  double c = d2q9_wall_momentum(i, velocity);
-  if (ghost) c = -d2q9_weight[i] * (b->ghost[x_side][y].cut + b->ghost[y_side][x].cut) / 2;
-  move(p, populations_received(p, i, x, y), populations_sent(p, ghost ? i : d2q9_opposite[i], x, y), 1, &c);
-}
-
-/* The links of one side that begin at its cells k0 .. k1 - 1. `step`: these have just taken a step. */
-static void side_links(struct boundary *b, struct populations *p, enum side_name side, int k0, int k1, bool step)
-{
-  if (b->side[side].type == SIDE_OUTLET) {
-    if (step) update_cut(b, p, side, k0, k1);
-    send_from_ghosts(b, p, side, k0, k1);
-  } else {
-    bounce_back(b, p, side, k0, k1);
+  const int cell[2] = {x_side == SIDE_LEFT ? 0 : p->nx - 1, y_side == SIDE_BOTTOM ? 0 : p->ny - 1};
+  bool imposed[2];
+  double velocity[2] = {0, 0}, excess = 0;
+  int open = 0;
+  for (int d = 0; d < 2; d++) {
+    const struct side_rule *own = b->rule[side[d]], *other = b->rule[side[!d]];
+    imposed[d] = own->imposes[0] || other->imposes[1];
+    if (imposed[d])
+      velocity[d] = b->side[own->imposes[0] ? side[d] : side[!d]].velocity[d];
+    else if (own->corner)
+      excess += own->corner(b, side[d], cell[!d]), open++;
   }
+  const double c = d2q9_wall_momentum(i, velocity) + (open > 0 ? d2q9_weight[i] * excess / open : 0);
+  move(p, populations_received(p, i, cell[0], cell[1]), populations_sent(p, reversed(i, imposed), cell[0], cell[1]), 1,
+       1, &c);
 }
 
 static void links(struct boundary *b, struct populations *p, int y, int x0, int x1, bool step)
 {
-  const bool ring = b->side[SIDE_LEFT].type == SIDE_PERIODIC;
-  const bool at[SIDE_COUNT] = {x0 == 0, x1 == p->nx, y == 0 && !p->periodic_y, y == p->ny - 1 && !p->periodic_y};
-  for (enum side_name x = SIDE_LEFT; x <= SIDE_RIGHT; x++) {
-    if (at[x] && ring) wrap(p, x == SIDE_LEFT ? 0 : p->nx - 1, y);
-    if (at[x] && !ring) side_links(b, p, x, y, y + 1, step);
-  }
+  const bool at[SIDE_COUNT] = {x0 == 0, x1 == p->nx, y == 0 && !b->ring[1], y == p->ny - 1 && !b->ring[1]};
+  for (enum side_name x = SIDE_LEFT; x <= SIDE_RIGHT; x++)
+    if (at[x]) side_links(b, p, b->ring[0] ? opposite(x) : x, y, y + 1, step);
   for (enum side_name end = SIDE_BOTTOM; end <= SIDE_TOP; end++) {
     if (!at[end]) continue;
     side_links(b, p, end, x0, x1, step);
     for (enum side_name x = SIDE_LEFT; x <= SIDE_RIGHT; x++)
-      if (at[x] && !ring) corner_link(b, p, x, end);
+      if (at[x] && !b->ring[0]) corner_link(b, p, x, end);
   }
 }
 

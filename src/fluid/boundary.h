@@ -3,7 +3,7 @@
  * A link is a cell at the edge and one of the populations that reach it from outside. Once a cell has taken a step, each
  * rule writes, from what that cell sent out, the population that some cell of the edge receives in the next step:
  *
- *   received_i(target) = sent_m(source) + c[k],   k the number of the source along the side
+ *   received_i(target) = a sent_m(source) + c[k],   k the number of the source along the side
  *
  *   wall, inlet  half-way bounce-back: target = source, m the opposite of i, c = 6 w_i e_i.u, the momentum of a wall or
  *                inflow of velocity u at the reference density.
@@ -19,11 +19,15 @@
  *                and the excess of steady flow, which with cut = h e would be its pressure gradient over h, vanishes
  *                within some times 6/h steps.
  *
- * Corners. The diagonal link that comes out of the corner of two sides, neither of them periodic, is bounced back at the
- * velocity whose components are the normal velocities of the two sides: that of an inlet, 0 of a wall, and of an outlet
- * the velocity of the other side, which runs into it. So inlets let in exactly velocity times length, walls that run into
- * a corner push no fluid through the other wall, and a uniform stream stays uniform. The corner of two outlets has a
- * ghost cell with the mean cut of its neighbours.
+ * a = 1 in all of these. Where m has the component of i along the side, the target is one cell farther along it than the source.
+ * side_rules.c has a row for each kind.
+ *
+ * Corners. The diagonal link that comes out of the corner of two sides, neither of them periodic, takes each component of the
+ * velocity from the side normal to it, which imposes its own: that of an inlet, 0 of a wall. An outlet imposes none, and the
+ * component is that of the other side, which runs into it. m has the imposed components reversed, and c is the momentum at that
+ * velocity. So inlets let in exactly velocity times length, walls that run into a corner push no fluid through the other
+ * wall, and a uniform stream stays uniform. At the corner of two outlets no component is imposed, and the ghost cell has the mean
+ * cut of its neighbours.
  *
  * Every slot that a rule writes belongs to its link, or to the ghost cell, alone (populations.h): rows may run in any
  * order that streaming allows, on any thread. */
@@ -32,15 +36,40 @@
 
 #include "fluid/populations.h"
 
-struct outlet_cell;
+struct side_rule;
+
+enum { SIDE_LINKS = 3 }; /* populations that enter through a side, of each of its cells */
+
+/* One of them, for all cells of a side. */
+struct side_link {
+  int i, m;  /* what is received of what is sent */
+  int along; /* component of e_i along the side */
+  int shift; /* from source to target, along the side */
+};
 
 struct boundary {
   const struct side *side; /* [SIDE_COUNT] */
+  const struct side_rule *rule[SIDE_COUNT];
   int size[2];
-  double hold;                           /* h, of outlets */
-  double *c[SIDE_COUNT][3];              /* of each link, by cell along the side */
-  struct outlet_cell *ghost[SIDE_COUNT]; /* of an outlet, by cell along the side */
+  bool ring[2]; /* whether the sides of each axis are joined */
+  double hold;  /* h, of outlets */
+  struct side_link link[SIDE_COUNT][SIDE_LINKS];
+  double *c[SIDE_COUNT][SIDE_LINKS]; /* of each link, by the cell along the side that is its source */
+  void *state[SIDE_COUNT];           /* of the rule, by cell along the side; NULL: none */
 };
+
+/* Cells along a side, and cell k of them. */
+static inline int boundary_length(const struct boundary *b, enum side_name side)
+{
+  return b->size[!side_axis(side)];
+}
+
+static inline void boundary_cell(const struct boundary *b, enum side_name side, int k, int cell[2])
+{
+  const int axis = side_axis(side);
+  cell[axis] = side_is_high(side) ? b->size[axis] - 1 : 0;
+  cell[!axis] = k;
+}
 
 /* h. The lowest tone of a box has the angular frequency c_s pi/(2 L), L its length, and is to get out. */
 static inline double boundary_outlet_hold(int nx, int ny)
@@ -64,13 +93,10 @@ void boundary_prefetch(const struct populations *populations, int y);
 /* What all links receive in the coming step, from populations that were read from a checkpoint. */
 void boundary_refill(struct boundary *boundary, struct populations *populations);
 
-/* Starts outlets anew, with populations (of parity 0) that have been written and not yet collided. */
+/* Starts sides with a state anew, with populations (of parity 0) that have been written and not yet collided. */
 void boundary_reset(struct boundary *boundary, const struct populations *populations);
 
-/* Saves or restores the ghost cells of outlets. */
+/* Saves or restores the states of sides. */
 bool boundary_store(struct boundary *boundary, struct store *store, struct status *status);
-
-/* The velocity at which the link out of a corner is bounced back; NAN for two outlets. */
-void boundary_corner_velocity(const struct side *x, const struct side *y, double velocity[2]);
 
 #endif
