@@ -119,6 +119,13 @@ Test(state, of_fixed_discs_and_of_none_is_whole)
   scene = scene_box(140, 120, 0.03, SIDES_CLOSED);
   scene.domain.side[SIDE_TOP].velocity[0] = 0.05;
   expect_same_end("blocked in time", &scene, 300, 71);
+  scene.fluid.zero_flux = true;
+  expect_same_end("blocked in time, without flux", &scene, 300, 71);
+  scene_add_disc(&scene, 6, 1.5, 50, 100);
+  scene.particles.gravity[1] = -1e-3;
+  expect_same_end("rows that no disc can reach ahead, without flux", &scene, 300, 71);
+  scene.fluid.zero_flux = false;
+  scene.particles.count = scene.particles.listed = 0;
   scene.domain.side[SIDE_LEFT] = (struct side){SIDE_INLET, {0.03, 0}};
   scene.domain.side[SIDE_RIGHT].type = SIDE_OUTLET;
   expect_same_end("outlet", &scene, 200, 51);

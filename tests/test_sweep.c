@@ -64,7 +64,8 @@ Test(lattice, equilibrium_moments_agree_with_the_quadratic_equilibrium)
 struct setting {
   const struct sweep_kernel *kernel;
   int form; /* -1: fluid alone */
-  bool adaptive, force;
+  bool adaptive;
+  enum sweep_terms terms;
   struct side side[SIDE_COUNT];
 };
 
@@ -120,7 +121,7 @@ static void fast_step(struct populations *p, struct boundary *boundary, const st
     cover_row(cover, y, p->precision, buffers);
     const struct solid_row row = {b[0], b[1], b[2]};
     sweep_row *kernel =
-        s->form < 0 ? s->kernel->fluid[s->adaptive][s->force] : s->kernel->discs[s->form][s->adaptive][s->force];
+        s->form < 0 ? s->kernel->fluid[s->adaptive][s->terms] : s->kernel->discs[s->form][s->adaptive][s->terms];
     kernel(a, NX, c, s->form < 0 ? NULL : &row, sum);
     boundary_after(boundary, p, y, 0, NX);
     momentum[0] += sum[0];
@@ -170,7 +171,7 @@ static double run_setting(const struct setting *s, unsigned long seed)
   struct sweep_constants c = {.rates = {.s_nu = 1.7, .s_e = 1.4, .s_q = 1.2}};
   /* the speeds of the random state are about this viscosity of 0.006, where the rate changes most */
   if (s->adaptive) c.rates = (struct rates){.s_nu = 1.93, .s_e = 1.4, .s_q = 0.6, .s_q_fast = 1.2};
-  if (s->force) {
+  if (s->terms != SWEEP_NO_FORCE) {
     c.force[0] = 1e-3, c.force[1] = -2e-3;
     c.uniform[0] = -1e-4, c.uniform[1] = 3e-4;
   }
@@ -185,7 +186,7 @@ static double run_setting(const struct setting *s, unsigned long seed)
     add_half(r.collided, expected, &mass);
     for (int d = 0; d < 2; d++) expected[d] += (mass * c.force[d] + CELLS * c.uniform[d]) / 2;
     largest = fmax(largest, largest_difference(&p, &r));
-    if (s->force)
+    if (s->terms == SWEEP_FORCE_AND_SUM)
       for (int d = 0; d < 2; d++) largest = fmax(largest, fabs(momentum[d] - expected[d]) / CELLS);
   }
   boundary_destroy(&boundary);
@@ -225,12 +226,13 @@ Test(sweep, every_kernel_agrees_with_the_reference_in_every_box)
     const double tolerance = kernel->precision == PRECISION_DOUBLE ? 2e-15 : 1e-6;
     for (size_t b = 0; b < sizeof boxes / sizeof boxes[0]; b++)
       for (int form = -1; form < FORM_COUNT; form++)
-        for (int way = 0; way < 4; way++, seed++) {
-          struct setting s = {.kernel = kernel, .form = form, .adaptive = way / 2, .force = way % 2};
+        for (int way = 0; way < 2 * SWEEP_TERMS; way++, seed++) {
+          struct setting s = {
+              .kernel = kernel, .form = form, .adaptive = way / SWEEP_TERMS, .terms = way % SWEEP_TERMS};
           memcpy(s.side, boxes[b].side, sizeof s.side);
           const double difference = run_setting(&s, seed);
-          cr_expect(difference < tolerance, "%s, %s, form %d, adaptive %d, force %d, seed %lu: %g", kernel->name,
-                    boxes[b].name, form, s.adaptive, s.force, seed, difference);
+          cr_expect(difference < tolerance, "%s, %s, form %d, adaptive %d, terms %d, seed %lu: %g", kernel->name,
+                    boxes[b].name, form, s.adaptive, s.terms, seed, difference);
         }
   }
 }

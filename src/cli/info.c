@@ -9,9 +9,9 @@
 #include "case/case_tree.h"
 #include "contact/substeps.h"
 #include "fluid/sweep.h"
-#include "sim/blocked.h"
 #include "sim/estimate.h"
 #include "sim/simulation.h"
+#include "sim/tuning.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -86,7 +86,8 @@ static void print_fluid(const struct scene *scene)
     printf(" where |u| is far below %g cells/step, %g far above", scene->fluid.viscosity, rates->s_q_fast);
   printf("\n");
   if (scene->fluid.zero_flux)
-    printf("zero flux    on: a uniform force cancels the mean momentum%s%s\n", scene_is_closed(scene, 0) ? " in x" : "",
+    printf("zero flux    on: a uniform force, set every %d steps, cancels the mean momentum%s%s\n",
+           zero_flux_create(scene).interval, scene_is_closed(scene, 0) ? " in x" : "",
            scene_is_closed(scene, 1) ? " in y" : "");
   if (tau > 1.5) {
     printf("  note: tau above 1.5; walls and discs lose accuracy; better: ");
@@ -241,16 +242,17 @@ static void print_contacts(const struct scene *scene, const struct stages *stage
 
 static void print_plan(const struct scene *scene)
 {
-  if (!blocked_possible(scene))
-    printf("blocking     off: zero_flux sums over the box each step\n");
-  else if (scene->particles.count > 0)
-    printf("blocking     in time, %d steps deep, of rows that no disc can reach\n",
-           scene->run.plan.depth > 0 ? scene->run.plan.depth : BLOCKED_AHEAD);
-  else if (scene->run.plan.depth == 0)
+  struct tuning tuning;
+  tuning_start(&tuning, scene, threads_for(scene_cells(scene)));
+  if (!tuning.settled)
     printf("blocking     in time, depth by trial in the first steps (run.json has it); fix it by --plan\n");
+  else if (tuning.best.depth <= 1)
+    printf("blocking     off\n");
+  else if (scene->particles.count > 0)
+    printf("blocking     in time, %d steps deep, of rows that no disc can reach\n", tuning.best.depth);
   else
-    printf("blocking     in time, %d steps deep, tiles of %d cells (0: whole rows)\n", scene->run.plan.depth,
-           scene->run.plan.width);
+    printf("blocking     in time, %d steps deep, tiles of %d cells (0: whole rows)\n", tuning.best.depth,
+           tuning.best.width);
 }
 
 /* Velocities of a frame and values of a snapshot; and what libpng and HDF5 were seen to take. */

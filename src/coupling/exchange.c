@@ -348,3 +348,12 @@ void exchange_add_momentum(const struct exchange *e, const struct discs *d, size
   momentum[0] += mass * d->vx[i] + (e->deferred ? e->deferred[3 * i] : 0);
   momentum[1] += mass * d->vy[i] + (e->deferred ? e->deferred[3 * i + 1] : 0);
 }
+
+void exchange_add_load(const struct exchange *e, const struct discs *d, size_t i, double load[2])
+{
+  if (d->motion[i] != DISC_FREE) return;
+  for (int axis = 0; axis < 2; axis++) {
+    load[axis] += (d->mass[i] - d->fluid_mass[i]) * e->gravity[axis];
+    if (e->mean_contact) load[axis] += e->mean_contact[3 * i + (size_t)axis];
+  }
+}

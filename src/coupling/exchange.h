@@ -56,6 +56,10 @@ void response_to(const struct response *k, const double impulse[3], double dv[3]
  * discs->contact_fx, contact_fy and contact_torque, and the velocity of its surface in the coming sweep. */
 void exchange_finish(struct exchange *exchange, struct discs *discs, size_t disc);
 
+/* Adds the steady force from outside on a free disc: buoyant weight, and the mean contact force of the implicit solve. Contact
+ * forces of free discs on each other cancel in the sum over all. */
+void exchange_add_load(const struct exchange *exchange, const struct discs *discs, size_t disc, double load[2]);
+
 /* Adds the momentum of a disc that the coupling conserves together with that of all fluid, inside discs too. */
 void exchange_add_momentum(const struct exchange *exchange, const struct discs *discs, size_t disc, double momentum[2]);
 

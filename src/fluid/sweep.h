@@ -1,8 +1,8 @@
 /* The sweep: collide, immersed moving boundary and stream of one row at a time, in place (see populations.h).
  *
  * A kernel is one body (sweep_kernel.c) compiled per precision and instruction set; literal arguments make its forms:
- * fluid alone or with discs (unified, owen or midpoint), each with constant or adaptive rates, and with or without a
- * body force. sweep_find chooses one at start-up.
+ * fluid alone or with discs (unified, owen or midpoint), each with constant or adaptive rates, and without a body
+ * force, with one, or with one and the sum of momentum. sweep_find chooses one at start-up.
  * */
 #ifndef DELBM_FLUID_SWEEP_H
 #define DELBM_FLUID_SWEEP_H
@@ -23,9 +23,12 @@ struct solid_row {
   void *b, *bvx, *bvy;
 };
 
-/* Updates n cells whose populations are read from a[i][0..n-1]. `solid` is NULL for fluid alone. With a force, sum[]
- * is set to the momentum of the cells: the mean of before and after the collision plus F/2, which is the momentum
- * after the collision in fluid alone and rho v inside discs. Without a force sum[] is unchanged. */
+/* Terms of a kernel: no force, a body force, or a body force and the sum of momentum. */
+enum sweep_terms { SWEEP_NO_FORCE, SWEEP_FORCE, SWEEP_FORCE_AND_SUM, SWEEP_TERMS };
+
+/* Updates n cells whose populations are read from a[i][0..n-1]. `solid` is NULL for fluid alone. A kernel with the sum
+ * sets sum[] to the momentum of the cells: the mean of before and after the collision plus F/2, which is the momentum
+ * after the collision in fluid alone and rho v inside discs. Other kernels leave sum[] unchanged; it may be NULL. */
 typedef void sweep_row(void *const a[Q], int n, const struct sweep_constants *constants, const struct solid_row *solid,
                        double sum[2]);
 
@@ -54,9 +57,9 @@ typedef double scan_row(void *const a[Q], int n);
 struct sweep_kernel {
   const char *name; /* for example avx512-double */
   enum precision precision;
-  sweep_row *fluid[2][2];             /* [adaptive rates?][with a force?] */
-  sweep_row *discs[FORM_COUNT][2][2]; /* [enum coupling_form][adaptive rates?][with a force?] */
-  sweep_row_between *two_arrays[2];   /* [adaptive rates?] */
+  sweep_row *fluid[2][SWEEP_TERMS];             /* [adaptive rates?][enum sweep_terms] */
+  sweep_row *discs[FORM_COUNT][2][SWEEP_TERMS]; /* [enum coupling_form][adaptive rates?][enum sweep_terms] */
+  sweep_row_between *two_arrays[2];             /* [adaptive rates?] */
   gather_row *gather;
   paint_row *paint;
   scan_row *scan;

@@ -49,9 +49,10 @@ enum { FLUID_ALONE = -1 }; /* in place of a form */
 static inline __attribute__((always_inline)) void collide_stream(void *const a[Q], void *const to[Q], const int n,
                                                                  const struct sweep_constants *constants,
                                                                  const struct solid_row *solid, double sum[2],
-                                                                 const int form, const bool adaptive, const bool force)
+                                                                 const int form, const bool adaptive,
+                                                                 const enum sweep_terms terms)
 {
-  const bool discs = form >= 0;
+  const bool discs = form >= 0, force = terms != SWEEP_NO_FORCE, summed = terms == SWEEP_FORCE_AND_SUM;
   const REAL *a0 = a[0], *a1 = a[1], *a2 = a[2], *a3 = a[3], *a4 = a[4];
   const REAL *a5 = a[5], *a6 = a[6], *a7 = a[7], *a8 = a[8];
   REAL *to0 = to[0], *to1 = to[1], *to2 = to[2], *to3 = to[3], *to4 = to[4];
@@ -126,6 +127,8 @@ static inline __attribute__((always_inline)) void collide_stream(void *const a[Q
       half_jy += half * Fy;
       quarter_tx += twelfth * Fx;
       quarter_ty += twelfth * Fy;
+    }
+    if (summed) {
       sum_x += jx + half_jx + half * Fx;
       sum_y += jy + half_jy + half * Fy;
     }
@@ -145,47 +148,55 @@ static inline __attribute__((always_inline)) void collide_stream(void *const a[Q
     to6[x] = f6 + diagonal_down + odd_down;
     to8[x] = f8 + diagonal_down - odd_down;
   }
-  if (force) {
+  if (summed) {
     sum[0] = (double)sum_x;
     sum[1] = (double)sum_y;
   }
 }
 
 /* In place: f_i* is written to the slot from which f_opposite(i) was read. */
-#define ROW(name, form, adaptive, force)                                                                               \
+#define ROW(name, form, adaptive, terms)                                                                               \
   static void name(void *const a[Q], int n, const struct sweep_constants *constants, const struct solid_row *solid,    \
                    double sum[2])                                                                                      \
   {                                                                                                                    \
     void *const to[Q] = {a[0], a[3], a[4], a[1], a[2], a[7], a[8], a[5], a[6]};                                        \
-    collide_stream(a, to, n, constants, solid, sum, form, adaptive, force);                                            \
+    collide_stream(a, to, n, constants, solid, sum, form, adaptive, terms);                                            \
   }
-ROW(sweep_fluid, FLUID_ALONE, false, false)
-ROW(sweep_fluid_force, FLUID_ALONE, false, true)
-ROW(sweep_fluid_adaptive, FLUID_ALONE, true, false)
-ROW(sweep_fluid_adaptive_force, FLUID_ALONE, true, true)
-ROW(sweep_discs_unified, FORM_UNIFIED, false, false)
-ROW(sweep_discs_unified_force, FORM_UNIFIED, false, true)
-ROW(sweep_discs_unified_adaptive, FORM_UNIFIED, true, false)
-ROW(sweep_discs_unified_adaptive_force, FORM_UNIFIED, true, true)
-ROW(sweep_discs_owen, FORM_OWEN, false, false)
-ROW(sweep_discs_owen_force, FORM_OWEN, false, true)
-ROW(sweep_discs_owen_adaptive, FORM_OWEN, true, false)
-ROW(sweep_discs_owen_adaptive_force, FORM_OWEN, true, true)
-ROW(sweep_discs_midpoint, FORM_MIDPOINT, false, false)
-ROW(sweep_discs_midpoint_force, FORM_MIDPOINT, false, true)
-ROW(sweep_discs_midpoint_adaptive, FORM_MIDPOINT, true, false)
-ROW(sweep_discs_midpoint_adaptive_force, FORM_MIDPOINT, true, true)
+ROW(sweep_fluid, FLUID_ALONE, false, SWEEP_NO_FORCE)
+ROW(sweep_fluid_force, FLUID_ALONE, false, SWEEP_FORCE)
+ROW(sweep_fluid_force_sum, FLUID_ALONE, false, SWEEP_FORCE_AND_SUM)
+ROW(sweep_fluid_adaptive, FLUID_ALONE, true, SWEEP_NO_FORCE)
+ROW(sweep_fluid_adaptive_force, FLUID_ALONE, true, SWEEP_FORCE)
+ROW(sweep_fluid_adaptive_force_sum, FLUID_ALONE, true, SWEEP_FORCE_AND_SUM)
+ROW(sweep_discs_unified, FORM_UNIFIED, false, SWEEP_NO_FORCE)
+ROW(sweep_discs_unified_force, FORM_UNIFIED, false, SWEEP_FORCE)
+ROW(sweep_discs_unified_force_sum, FORM_UNIFIED, false, SWEEP_FORCE_AND_SUM)
+ROW(sweep_discs_unified_adaptive, FORM_UNIFIED, true, SWEEP_NO_FORCE)
+ROW(sweep_discs_unified_adaptive_force, FORM_UNIFIED, true, SWEEP_FORCE)
+ROW(sweep_discs_unified_adaptive_force_sum, FORM_UNIFIED, true, SWEEP_FORCE_AND_SUM)
+ROW(sweep_discs_owen, FORM_OWEN, false, SWEEP_NO_FORCE)
+ROW(sweep_discs_owen_force, FORM_OWEN, false, SWEEP_FORCE)
+ROW(sweep_discs_owen_force_sum, FORM_OWEN, false, SWEEP_FORCE_AND_SUM)
+ROW(sweep_discs_owen_adaptive, FORM_OWEN, true, SWEEP_NO_FORCE)
+ROW(sweep_discs_owen_adaptive_force, FORM_OWEN, true, SWEEP_FORCE)
+ROW(sweep_discs_owen_adaptive_force_sum, FORM_OWEN, true, SWEEP_FORCE_AND_SUM)
+ROW(sweep_discs_midpoint, FORM_MIDPOINT, false, SWEEP_NO_FORCE)
+ROW(sweep_discs_midpoint_force, FORM_MIDPOINT, false, SWEEP_FORCE)
+ROW(sweep_discs_midpoint_force_sum, FORM_MIDPOINT, false, SWEEP_FORCE_AND_SUM)
+ROW(sweep_discs_midpoint_adaptive, FORM_MIDPOINT, true, SWEEP_NO_FORCE)
+ROW(sweep_discs_midpoint_adaptive_force, FORM_MIDPOINT, true, SWEEP_FORCE)
+ROW(sweep_discs_midpoint_adaptive_force_sum, FORM_MIDPOINT, true, SWEEP_FORCE_AND_SUM)
 
 /* The classic kernels, from one array to another: reference of the benchmark `sweep`. */
 static void sweep_two_arrays(void *const from[Q], void *const to[Q], int n, const struct sweep_constants *constants)
 {
-  collide_stream(from, to, n, constants, NULL, NULL, FLUID_ALONE, false, false);
+  collide_stream(from, to, n, constants, NULL, NULL, FLUID_ALONE, false, SWEEP_NO_FORCE);
 }
 
 static void sweep_two_arrays_adaptive(void *const from[Q], void *const to[Q], int n,
                                       const struct sweep_constants *constants)
 {
-  collide_stream(from, to, n, constants, NULL, NULL, FLUID_ALONE, true, false);
+  collide_stream(from, to, n, constants, NULL, NULL, FLUID_ALONE, true, SWEEP_NO_FORCE);
 }
 
 extern gather_row KERNEL(gather_row);
@@ -195,13 +206,17 @@ extern const struct sweep_kernel KERNEL(sweep_kernel);
 const struct sweep_kernel KERNEL(sweep_kernel) = {
     .name = VARIANT_NAME,
     .precision = sizeof(REAL) == sizeof(double) ? PRECISION_DOUBLE : PRECISION_SINGLE,
-    .fluid = {{sweep_fluid, sweep_fluid_force}, {sweep_fluid_adaptive, sweep_fluid_adaptive_force}},
-    .discs = {[FORM_UNIFIED] = {{sweep_discs_unified, sweep_discs_unified_force},
-                                {sweep_discs_unified_adaptive, sweep_discs_unified_adaptive_force}},
-              [FORM_OWEN] = {{sweep_discs_owen, sweep_discs_owen_force},
-                             {sweep_discs_owen_adaptive, sweep_discs_owen_adaptive_force}},
-              [FORM_MIDPOINT] = {{sweep_discs_midpoint, sweep_discs_midpoint_force},
-                                 {sweep_discs_midpoint_adaptive, sweep_discs_midpoint_adaptive_force}}},
+    .fluid = {{sweep_fluid, sweep_fluid_force, sweep_fluid_force_sum},
+              {sweep_fluid_adaptive, sweep_fluid_adaptive_force, sweep_fluid_adaptive_force_sum}},
+    .discs = {[FORM_UNIFIED] = {{sweep_discs_unified, sweep_discs_unified_force, sweep_discs_unified_force_sum},
+                                {sweep_discs_unified_adaptive, sweep_discs_unified_adaptive_force,
+                                 sweep_discs_unified_adaptive_force_sum}},
+              [FORM_OWEN] = {{sweep_discs_owen, sweep_discs_owen_force, sweep_discs_owen_force_sum},
+                             {sweep_discs_owen_adaptive, sweep_discs_owen_adaptive_force,
+                              sweep_discs_owen_adaptive_force_sum}},
+              [FORM_MIDPOINT] = {{sweep_discs_midpoint, sweep_discs_midpoint_force, sweep_discs_midpoint_force_sum},
+                                 {sweep_discs_midpoint_adaptive, sweep_discs_midpoint_adaptive_force,
+                                  sweep_discs_midpoint_adaptive_force_sum}}},
     .two_arrays = {sweep_two_arrays, sweep_two_arrays_adaptive},
     .gather = KERNEL(gather_row),
     .paint = KERNEL(paint_row),

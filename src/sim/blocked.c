@@ -2,11 +2,6 @@
 
 #include <omp.h>
 
-bool blocked_possible(const struct scene *scene)
-{
-  return !scene->fluid.zero_flux;
-}
-
 int blocked_deepest(int ny, int threads)
 {
   return ny / threads / 2;
@@ -28,17 +23,17 @@ static struct slab slab_of(const struct slab *whole, int number, int count)
                        .open_above = whole->open_above || number + 1 < count};
 }
 
-/* Cells x0 .. x1 - 1 of row y, which may lie beyond a periodic side, one step of the given parity. */
-static void update(struct flow *f, int parity, int y, int x0, int x1)
+/* Step s of the block in cells x0 .. x1 - 1 of row y, which may lie beyond a periodic side. */
+static void update(struct flow *f, int s, int y, int x0, int x1)
 {
   if (x0 >= x1) return;
   struct populations p = f->populations; /* the parity of a block's steps differs from row to row */
-  p.parity = parity;
+  p.parity ^= s & 1;
   y = populations_row(&p, y);
   void *a[Q];
-  double momentum[2];
   populations_cells(&p, x0, y, a);
-  f->kernel->fluid[f->adaptive][f->force](a, x1 - x0, &f->constants, NULL, momentum);
+  f->kernel->fluid[f->adaptive][flow_terms(f, s)](a, x1 - x0, &f->constants, NULL,
+                                                  f->row_momentum ? f->row_momentum[y] : NULL);
   boundary_after(&f->boundary, &p, y, x0, x1);
 }
 
@@ -50,14 +45,14 @@ static int clamp(int at, int low, int high)
 /* Step s of tile number k (of the last, if `last`) in row y. */
 static void update_tile(struct flow *f, int y, int s, int k, int width, bool last)
 {
-  const int nx = f->populations.nx, parity = f->populations.parity ^ (s & 1);
+  const int nx = f->populations.nx;
   const bool ring = f->scene->domain.side[SIDE_LEFT].type == SIDE_PERIODIC;
   const bool whole = k == 0 && last;       /* the tile is the row: nothing to retreat from */
   const int left = ring && !whole ? s : 0; /* where the first tile begins */
   const int x0 = k == 0 ? left : clamp(k * width - s, left, nx);
   const int x1 = last ? nx : clamp((k + 1) * width - s, left, nx);
-  update(f, parity, y, x0, x1);
-  if (left > 0 && last) update(f, parity, y, 0, left);
+  update(f, s, y, x0, x1);
+  if (left > 0 && last) update(f, s, y, 0, left);
 }
 
 /* A wavefront over the slab, tile by tile. */
@@ -77,14 +72,13 @@ static void sweep_slab(struct flow *f, const struct slab *slab, int width, int s
 static void sweep_border(struct flow *f, int border, int steps)
 {
   for (int s = 1; s < steps; s++)
-    for (int y = border - s; y < border + s; y++) update(f, f->populations.parity ^ (s & 1), y, 0, f->populations.nx);
+    for (int y = border - s; y < border + s; y++) update(f, s, y, 0, f->populations.nx);
 }
 
-void stage_sweep_blocked(struct flow *f, const struct blocking *blocking, int steps)
+/* A block in tiles of this width. */
+static void sweep_block(struct flow *f, int width, int steps)
 {
-  const int nx = f->populations.nx, ny = f->populations.ny;
-  const bool tiled = blocking->width > 0 && blocking->width < nx && steps <= nx; /* a retreat round the box is none */
-  const int width = tiled ? blocking->width : nx;
+  const int ny = f->populations.ny;
   const bool ring = f->populations.periodic_y;
   const struct slab box = {.end = ny, .open_below = ring, .open_above = ring};
   const struct slab slab = slab_of(&box, omp_get_thread_num(), omp_get_num_threads());
@@ -93,7 +87,16 @@ void stage_sweep_blocked(struct flow *f, const struct blocking *blocking, int st
   if (slab.open_below) sweep_border(f, slab.first, steps);
 #pragma omp barrier
 #pragma omp single
-  f->populations.parity ^= steps & 1;
+  flow_advance(f, steps);
+}
+
+void stage_sweep_blocked(struct flow *f, const struct blocking *blocking, int steps)
+{
+  const int nx = f->populations.nx;
+  const bool tiled = blocking->width > 0 && blocking->width < nx && steps <= nx; /* a retreat round the box is none */
+  const int whole = !tiled ? steps : flow_terms(f, steps - 1) == SWEEP_FORCE_AND_SUM;
+  if (steps > whole) sweep_block(f, blocking->width, steps - whole);
+  if (whole > 0) sweep_block(f, nx, whole);
 }
 
 /* Rows that may go ahead by `steps` must leave one slab twice as high. */

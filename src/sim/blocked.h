@@ -25,13 +25,11 @@ struct blocking {
   int width; /* cells of a tile; 0: whole rows */
 };
 
-/* True if the scene can be blocked in time: nothing that sums over the box each step. */
-bool blocked_possible(const struct scene *scene);
-
 /* The most steps a block can have in a box of ny rows shared by so many threads. */
 int blocked_deepest(int ny, int threads);
 
-/* Advances by `steps`, at most blocking->depth, in one block; called by all threads of a parallel region. */
+/* Advances by `steps`, at most blocking->depth and no further than to the end of an interval of zero_flux, in one block. A
+ * step that ends an interval sums over whole rows, and so has no tiles. Called by all threads of a parallel region. */
 void stage_sweep_blocked(struct flow *flow, const struct blocking *blocking, int steps);
 
 /* The rows near discs at the start of a block, before they grow: rows.first .. rows.end - 1, which may lie beyond the box

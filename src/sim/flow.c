@@ -12,6 +12,7 @@ bool flow_create(struct flow *f, const struct scene *scene, const struct stages 
       .scene = scene,
       .force = stages->force,
       .adaptive = rates_are_adaptive(&scene->fluid.rates),
+      .zero_flux = zero_flux_create(scene),
       .constants = {.rates = scene->fluid.rates, .force = {scene->fluid.force[0], scene->fluid.force[1]}}};
   const int nx = scene->domain.size[0], ny = scene->domain.size[1];
   f->kernel = sweep_find(scene->fluid.kernel, scene->fluid.precision, status);
@@ -19,7 +20,7 @@ bool flow_create(struct flow *f, const struct scene *scene, const struct stages 
   if (!populations_create(&f->populations, nx, ny, scene_is_periodic(scene, 1), scene->fluid.precision, status))
     return false;
   if (!boundary_create(&f->boundary, scene->domain.side, nx, ny, status) || !flow_prepare(f, 1, status)) return false;
-  if (!f->force) return true;
+  if (f->zero_flux.interval == 0) return true;
   f->row_momentum = memory_allocate((size_t)ny, sizeof *f->row_momentum, "the rows' momentum", status);
   return f->row_momentum != NULL;
 }
@@ -123,7 +124,7 @@ static void set_row(struct flow *f, flow_initial *initial, const void *context, 
 void flow_start(struct flow *f, flow_initial *initial, const void *context, const struct sweep_discs *discs)
 {
   populations_rest(&f->populations);
-  const bool all = initial || f->constants.force[0] != 0 || f->constants.force[1] != 0;
+  const bool all = initial || f->force;
   for (int y = 0; y < f->populations.ny; y++) set_row(f, initial ? initial : at_rest, context, all, y, discs);
   boundary_reset(&f->boundary, &f->populations);
 }
@@ -137,51 +138,69 @@ void flow_set(struct flow *f, const double *density, const double *ux, const dou
   boundary_reset(&f->boundary, &f->populations);
 }
 
-bool flow_store(struct flow *f, struct store *store, struct status *status)
+void flow_load(struct flow *f, const struct exchange *exchange, const struct discs *discs)
 {
+  const double cells = (double)scene_cells(f->scene);
+  double on_discs[2] = {0, 0};
+  for (size_t i = 0; discs && i < discs->count; i++) exchange_add_load(exchange, discs, i, on_discs);
+  for (int axis = 0; axis < 2; axis++) f->load[axis] = f->constants.force[axis] + on_discs[axis] / cells;
+}
+
+void flow_balance(struct flow *f)
+{
+  if (f->zero_flux.interval > 0) zero_flux_start(&f->zero_flux, f->load, f->constants.uniform);
+}
+
+bool flow_store(struct flow *f, int64_t step, struct store *store, struct status *status)
+{
+  struct zero_flux *z = &f->zero_flux;
+  if (z->interval > 0) z->phase = (int)(step % z->interval);
   return populations_store(&f->populations, store, status) &&
          store_bytes(store, f->constants.uniform, sizeof f->constants.uniform, status) &&
-         store_bytes(store, f->mean_momentum, sizeof f->mean_momentum, status) &&
-         boundary_store(&f->boundary, store, status);
+         store_bytes(store, z->mean_momentum, sizeof z->mean_momentum, status) &&
+         store_bytes(store, z->load, sizeof z->load, status) && boundary_store(&f->boundary, store, status);
 }
 
 static void sweep_row_at(struct flow *f, int y, const struct sweep_discs *discs)
 {
   const struct occupation *o = discs->now;
-  double unused[2], *momentum = f->force ? f->row_momentum[y] : unused;
+  const enum sweep_terms terms = flow_terms(f, 0);
+  double *momentum = f->row_momentum ? f->row_momentum[y] : NULL;
   const int nx = f->populations.nx;
   size_t count = 0;
   const struct run *runs = o ? occupation_row(o, y, &count) : NULL;
   void *a[Q];
   populations_cells(&f->populations, 0, y, a);
   if (count == 0) {
-    f->kernel->fluid[f->adaptive][f->force](a, nx, &f->constants, NULL, momentum);
+    f->kernel->fluid[f->adaptive][terms](a, nx, &f->constants, NULL, momentum);
     return;
   }
   const struct solid_row *solid = &f->solid_rows[omp_get_thread_num()];
   f->kernel->paint(solid, nx, runs, count, occupation_band(o, y)->share, discs->exchange->surface);
-  f->kernel->discs[f->scene->coupling.form][f->adaptive][f->force](a, nx, &f->constants, solid, momentum);
+  f->kernel->discs[f->scene->coupling.form][f->adaptive][terms](a, nx, &f->constants, solid, momentum);
 }
 
-/* The uniform force that cancels the mean momentum, along the axes that walls close. That of one step alone, as the force,
- * would feed what changes its sign every step: a disc at rest on the ground then shook harder and harder until the run
- * diverged. The mean over this step and the last does not see it, and half of the force in between makes up for what it is
- * late: should all momentum answer to the force as free fluid does, it is cancelled in one step, and for an answer of up
- * to three times that, as of light discs, in some. */
-static void cancel_flux(struct flow *f)
+/* Mean momentum of a cell; rows are added from the lowest up. */
+static void mean_momentum(const struct flow *f, double mean[2])
 {
-  double sum[2] = {0, 0};
-  for (int y = 0; y < f->populations.ny; y++) {
-    sum[0] += f->row_momentum[y][0];
-    sum[1] += f->row_momentum[y][1];
-  }
   const double cells = (double)f->populations.nx * f->populations.ny;
-  for (int axis = 0; axis < 2; axis++) {
-    const double mean = sum[axis] / cells;
-    f->constants.uniform[axis] =
-        scene_is_closed(f->scene, axis) ? -(mean + f->mean_momentum[axis] + f->constants.uniform[axis]) / 2 : 0;
-    f->mean_momentum[axis] = mean;
-  }
+  double sum[2] = {0, 0};
+  for (int y = 0; y < f->populations.ny; y++)
+    for (int axis = 0; axis < 2; axis++) sum[axis] += f->row_momentum[y][axis];
+  for (int axis = 0; axis < 2; axis++) mean[axis] = sum[axis] / cells;
+}
+
+void flow_advance(struct flow *f, int steps)
+{
+  struct zero_flux *z = &f->zero_flux;
+  f->populations.parity ^= steps & 1;
+  if (z->interval == 0) return;
+  z->phase += steps;
+  if (z->phase < z->interval) return;
+  double mean[2];
+  mean_momentum(f, mean);
+  zero_flux_update(z, mean, f->load, f->constants.uniform);
+  z->phase = 0;
 }
 
 /* Takes the moments of row y, about to be collided in the state `p`, for the discs that cover it. */
@@ -223,7 +242,6 @@ void stage_sweep(struct flow *f, const struct rows *rows, const struct sweep_dis
 #pragma omp barrier
 #pragma omp single
   {
-    if (f->scene->fluid.zero_flux) cancel_flux(f);
-    p->parity ^= 1;
+    flow_advance(f, 1);
   }
 }

@@ -9,6 +9,7 @@
 #include "sim/diagnostics.h"
 #include "sim/initial.h"
 #include "sim/stages.h"
+#include "sim/zero_flux.h"
 
 struct flow {
   const struct scene *scene;
@@ -18,8 +19,9 @@ struct flow {
   struct populations populations;
   struct boundary boundary;
   struct sweep_constants constants;
-  double (*row_momentum)[2];    /* after the sweep, of each row; with a force only */
-  double mean_momentum[2];      /* with zero_flux: what the last step left, a cell */
+  struct zero_flux zero_flux;
+  double load[2];               /* with zero_flux: force from outside on a cell, uniform force apart */
+  double (*row_momentum)[2];    /* of each row, after the last step of an interval of zero_flux; else NULL */
   struct solid_row *solid_rows; /* of each thread */
   int threads;
 };
@@ -44,8 +46,13 @@ void flow_start(struct flow *flow, flow_initial *initial, const void *context, c
 void flow_set(struct flow *flow, const double *density, const double *ux, const double *uy,
               const struct sweep_discs *discs);
 
-/* Saves or restores the fluid and the uniform force of the coming step. */
-bool flow_store(struct flow *flow, struct store *store, struct status *status);
+/* Before the start, and before a step with SWEEP_FORCE_AND_SUM: the force from outside on fluid and discs, which both may be
+ * NULL; and before the start the uniform force that balances it. */
+void flow_load(struct flow *flow, const struct exchange *exchange, const struct discs *discs);
+void flow_balance(struct flow *flow);
+
+/* Saves or restores the fluid and the uniform force after so many steps. */
+bool flow_store(struct flow *flow, int64_t step, struct store *store, struct status *status);
 
 /* Prepares for a parallel region of `threads`. */
 bool flow_prepare(struct flow *flow, int threads, struct status *status);
@@ -57,13 +64,24 @@ static inline struct fluid_force flow_force(const struct flow *flow)
   return (struct fluid_force){{c->force[0], c->force[1]}, {c->uniform[0], c->uniform[1]}};
 }
 
+/* Terms of the kernel in the step that follows so many steps, none of which ends an interval of zero_flux. */
+static inline enum sweep_terms flow_terms(const struct flow *flow, int ahead)
+{
+  const struct zero_flux *z = &flow->zero_flux;
+  if (!flow->force) return SWEEP_NO_FORCE;
+  return z->interval > 0 && z->phase + ahead + 1 == z->interval ? SWEEP_FORCE_AND_SUM : SWEEP_FORCE;
+}
+
+/* Parity and uniform force of the step after these, which all rows have taken; by one thread. */
+void flow_advance(struct flow *flow, int steps);
+
 /* Rows first .. end - 1; those beyond a periodic side are counted on. */
 struct rows {
   int first, end;
 };
 
 /* The sweep of the given rows. With discs each row's moments are taken for the next exchange once the row and its
- * neighbours are done. Ends with the next step's parity and uniform force. Called by all threads of a parallel region or
+ * neighbours are done. Ends with flow_advance. Called by all threads of a parallel region or
  * outside of one. */
 void stage_sweep(struct flow *flow, const struct rows *rows, const struct sweep_discs *discs);
 

@@ -102,7 +102,11 @@ static struct simulation *create(const struct scene *scene, struct status *statu
   if (!s) return NULL;
   s->scene = scene;
   s->stages = stages_of(scene);
-  if (create_discs(s, status) && paint(s, status) && flow_create(&s->flow, scene, &s->stages, status)) return s;
+  if (create_discs(s, status) && paint(s, status) && flow_create(&s->flow, scene, &s->stages, status)) {
+    flow_load(&s->flow, &s->exchange, s->stages.exchange ? &s->discs : NULL);
+    flow_balance(&s->flow);
+    return s;
+  }
   simulation_destroy(s);
   return NULL;
 }
@@ -184,6 +188,10 @@ static bool step(struct simulation *s, const struct rows *rows, double *since)
     struct occupation *next = next_occupation(s);
     if (!step_discs(s, next, since) || !discs_stay_within(s, next, rows)) return false;
     discs = (struct sweep_discs){.now = present(s), .exchange = &s->exchange, .next = next};
+    if (flow_terms(&s->flow, 0) == SWEEP_FORCE_AND_SUM) {
+#pragma omp single
+      flow_load(&s->flow, &s->exchange, &s->discs);
+    }
   }
   stage_sweep(&s->flow, rows, &discs);
   charge(s, STAGE_SWEEP, since);
@@ -207,15 +215,16 @@ bool simulation_measure(const struct scene *scene, struct simulation_memory *mem
   return good;
 }
 
-/* Steps of a scene that is blocked in time: blocks of equal length, none deeper than the tuning says. */
+/* Steps of a scene that is blocked in time: blocks of equal length, none deeper than the tuning says, and none across the
+ * end of an interval of zero_flux. */
 static void run_blocks(struct simulation *s, int64_t steps)
 {
   const int64_t end = s->step + steps;
   while (s->step < end) {
-    const struct blocking blocking = tuning_next(&s->tuning, end - s->step);
-    const int64_t blocks = (end - s->step + blocking.depth - 1) / blocking.depth;
-    const int length = s->tuning.settled ? (int)((end - s->step + blocks - 1) / blocks) : blocking.depth;
-    const int64_t left = end - s->step;
+    const int64_t left = zero_flux_steps_left(&s->flow.zero_flux, end - s->step);
+    const struct blocking blocking = tuning_next(&s->tuning, left);
+    const int64_t blocks = (left + blocking.depth - 1) / blocking.depth;
+    const int length = s->tuning.settled ? (int)((left + blocks - 1) / blocks) : blocking.depth;
     const int block = length < left ? length : (int)left;
     const double begun = clock_now();
 #pragma omp parallel num_threads(s->threads)
@@ -270,7 +279,8 @@ static void run_near_blocks(struct simulation *s, int64_t steps)
 {
   const int64_t end = s->step + steps;
   while (s->step < end && !s->team.failed) {
-    const int64_t left = end - s->step, depth = s->tuning.best.depth, length = depth < left ? depth : left;
+    const int64_t left = zero_flux_steps_left(&s->flow.zero_flux, end - s->step);
+    const int64_t depth = s->tuning.best.depth, length = depth < left ? depth : left;
     struct near_rows near;
     if (length > 1 && blocked_near(s->scene, present(s), (int)length, &near))
       run_near_block(s, &near, (int)length);
@@ -372,7 +382,7 @@ static bool store_state(struct simulation *s, struct store *store, struct status
 {
   return store_mark(store, "simulation", status) && store_bytes(store, &s->step, sizeof s->step, status) &&
          store_bytes(store, s->initial_momentum, sizeof s->initial_momentum, status) &&
-         store_bytes(store, &s->max_mach, sizeof s->max_mach, status) && flow_store(&s->flow, store, status) &&
+         store_bytes(store, &s->max_mach, sizeof s->max_mach, status) && flow_store(&s->flow, s->step, store, status) &&
          (!s->stages.exchange ||
           (discs_store(&s->discs, store, status) && exchange_store(&s->exchange, s->discs.count, store, status) &&
            contacts_store(&s->contacts, s->discs.count, store, status))) &&

@@ -22,13 +22,15 @@ static void skip_impossible(struct tuning *t)
 void tuning_start(struct tuning *t, const struct scene *scene, int threads)
 {
   *t = (struct tuning){.best = {.depth = 1}, .settled = true, .best_time = INFINITY};
-  if (!blocked_possible(scene)) return;
+  const int interval = zero_flux_create(scene).interval;
   if (scene->particles.count > 0) { /* where and how deep depends on where the discs are */
     t->best.depth = scene->run.plan.depth > 0 ? scene->run.plan.depth : BLOCKED_AHEAD;
+    if (interval > 0 && t->best.depth > interval) t->best.depth = interval;
     return;
   }
   t->widest = scene->domain.size[0];
   t->deepest = blocked_deepest(scene->domain.size[1], threads);
+  if (interval > 0 && t->deepest > interval) t->deepest = interval;
   if (scene->run.plan.depth == 0) {
     skip_impossible(t);
     return;

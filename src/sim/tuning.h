@@ -13,11 +13,12 @@ struct tuning {
   bool settled;     /* no more trials */
   int trial;        /* number of the next one */
   int widest;       /* no tile need be as wide */
-  int deepest;      /* that the box and the threads allow */
+  int deepest;      /* that the box, the threads and zero_flux allow */
   double best_time; /* seconds a step */
 };
 
-/* Starts with trials, or settled as run.plan says or as a scene that cannot be blocked needs. */
+/* Starts with trials, or settled as run.plan says or where discs leave nothing to try. No block is longer than an interval of
+ * zero_flux. */
 void tuning_start(struct tuning *tuning, const struct scene *scene, int threads);
 
 /* The blocking for the next block, of at most `steps` steps. */
