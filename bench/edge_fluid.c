@@ -93,7 +93,7 @@ static struct energies measure(struct layer *l)
 static bool has_diverged(struct layer *l)
 {
   const struct worst_cell worst = diagnostics_worst(&l->flow.populations, l->flow.kernel->scan);
-  return !(sqrt(worst.speed2) <= diagnostics_fastest);
+  return !(sqrt(worst.speed2) <= diagnostics_speed_limit);
 }
 
 /* Runs until fluid has crossed the box once. */

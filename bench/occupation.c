@@ -121,8 +121,9 @@ static bool same_row(const struct occupation *a, const struct occupation *b, int
   const struct run *left = occupation_row(a, y, &count), *right = occupation_row(b, y, &other);
   if (count != other) return false;
   for (size_t k = 0; k < count; k++) {
-    const double *l = occupation_band(a, y)->share + left[k].share, *r = occupation_band(b, y)->share + right[k].share;
-    if (left[k].x != right[k].x || left[k].n != right[k].n || left[k].disc != right[k].disc ||
+    const double *l = occupation_band(a, y)->owner_weight + left[k].first,
+                 *r = occupation_band(b, y)->owner_weight + right[k].first;
+    if (left[k].x != right[k].x || left[k].n != right[k].n || left[k].owner != right[k].owner ||
         left[k].rx != right[k].rx || left[k].ry != right[k].ry || memcmp(l, r, (size_t)left[k].n * sizeof *l) != 0)
       return false;
   }

@@ -63,7 +63,7 @@ static void *cells_of(const struct painting *p)
 }
 
 /* Writes one disc's weights w_p B to all cells of the box. */
-static void spread_shares(const struct painting *p, size_t disc, double *cells)
+static void spread_weights(const struct painting *p, size_t disc, double *cells)
 {
   const int nx = p->scene.domain.size[0], ny = p->scene.domain.size[1];
   memset(cells, 0, sizeof *cells * (size_t)nx * (size_t)ny);
@@ -71,8 +71,8 @@ static void spread_shares(const struct painting *p, size_t disc, double *cells)
     size_t count;
     const struct run *row = occupation_row(&p->occupation, y, &count);
     for (size_t r = 0; r < count; r++)
-      for (int k = 0; row[r].disc == disc && k < row[r].n; k++)
-        cells[y * nx + row[r].x + k] += occupation_band(&p->occupation, y)->share[row[r].share + (size_t)k];
+      for (int k = 0; row[r].owner == disc && k < row[r].n; k++)
+        cells[y * nx + row[r].x + k] += occupation_band(&p->occupation, y)->owner_weight[row[r].first + (size_t)k];
   }
 }
 
@@ -88,7 +88,7 @@ static void spread(const struct painting *p, size_t disc, double *cells)
   alone.discs.x[0] = p->discs.x[disc];
   alone.discs.y[0] = p->discs.y[disc];
   paint(&alone);
-  spread_shares(&alone, 0, cells);
+  spread_weights(&alone, 0, cells);
   const double t = 3 * p->scene.fluid.viscosity;
   for (int k = 0; k < p->scene.domain.size[0] * p->scene.domain.size[1]; k++) cells[k] *= (1 + t) / (t + cells[k]);
   alone.scene = (struct scene){0}; /* is p's */
@@ -300,9 +300,9 @@ Test(occupation, runs_know_where_their_cells_lie_from_the_centre)
     const struct run *row = occupation_row(&p.occupation, y, &count);
     for (size_t r = 0; r < count; r++) {
       double corner[2];
-      corner_of(&p, row[r].disc, row[r].x, y, corner);
-      cr_expect_float_eq(row[r].rx, corner[0] + 0.5, 1e-13, "disc %u, row %d", row[r].disc, y);
-      cr_expect_float_eq(row[r].ry, corner[1] + 0.5, 1e-13, "disc %u, row %d", row[r].disc, y);
+      corner_of(&p, row[r].owner, row[r].x, y, corner);
+      cr_expect_float_eq(row[r].rx, corner[0] + 0.5, 1e-13, "disc %u, row %d", row[r].owner, y);
+      cr_expect_float_eq(row[r].ry, corner[1] + 0.5, 1e-13, "disc %u, row %d", row[r].owner, y);
     }
   }
   end(&p);
@@ -349,15 +349,15 @@ static const char *compare_cells(const struct occupation *a, const struct occupa
   if (memcmp(a->column, b->column, indices) || memcmp(a->row, b->row, indices) || memcmp(a->rows, b->rows, indices))
     return "places";
   for (size_t i = 0; i < a->discs; i++) /* index of the sums of a disc's rows */
-    if (memcmp(a->place + 2 * a->first_row[i], b->place + 2 * b->first_row[i],
-               2 * (size_t)a->rows[i] * sizeof *a->place))
+    if (memcmp(a->run_index + 2 * a->first_row[i], b->run_index + 2 * b->first_row[i],
+               2 * (size_t)a->rows[i] * sizeof *a->run_index))
       return "rows of discs";
   return NULL;
 }
 
 static bool same_run(const struct run *a, const struct run *b)
 {
-  return a->x == b->x && a->n == b->n && a->disc == b->disc && a->share == b->share &&
+  return a->x == b->x && a->n == b->n && a->owner == b->owner && a->first == b->first &&
          !memcmp(&a->rx, &b->rx, sizeof a->rx) && !memcmp(&a->ry, &b->ry, sizeof a->ry);
 }
 
@@ -371,9 +371,9 @@ static const char *compare(const struct occupation *a, const struct occupation *
       return "rows";
     for (int row = 0; row < BAND_ROWS; row++)
       for (size_t r = s->row_start[row]; r < s->row_end[row]; r++) {
-        const size_t share = s->runs[r].share, bytes = (size_t)s->runs[r].n * sizeof(double);
+        const size_t first = s->runs[r].first, bytes = (size_t)s->runs[r].n * sizeof(double);
         if (!same_run(&s->runs[r], &t->runs[r])) return "runs";
-        if (memcmp(s->share + share, t->share + share, bytes)) return "shares";
+        if (memcmp(s->owner_weight + first, t->owner_weight + first, bytes)) return "owner weights";
       }
     if (s->shared_cells != t->shared_cells || s->shared_owners != t->shared_owners) return "count of shared cells";
   }
@@ -421,7 +421,7 @@ Test(occupation, tables_depend_on_where_discs_are_and_not_on_where_they_were)
 static size_t stale_bands(const struct occupation *o)
 {
   size_t count = 0;
-  for (int k = 0; k < o->band_count; k++) count += o->stale[k];
+  for (int k = 0; k < o->band_count; k++) count += o->changed[k];
   return count;
 }
 
@@ -510,7 +510,7 @@ enum { CROWD = 22, CROWD_NX = 45, CROWD_NY = 38, CROWD_CELLS = CROWD_NX * CROWD_
 
 struct crowd {
   struct painting p;
-  double eps[CROWD][CROWD_CELLS], share[CROWD][CROWD_CELLS];
+  double eps[CROWD][CROWD_CELLS], weight[CROWD][CROWD_CELLS];
 };
 
 /* Some with nearly or exactly the centre of the one before. */
@@ -528,31 +528,32 @@ static void crowd_create(struct crowd *c, enum sides sides, unsigned long seed)
   paint(&c->p);
   for (size_t i = 0; i < CROWD; i++) {
     spread(&c->p, i, c->eps[i]);
-    spread_shares(&c->p, i, c->share[i]);
+    spread_weights(&c->p, i, c->weight[i]);
   }
   gsl_rng_free(random);
 }
 
-/* Checks a cell's shares and returns how many own it. */
-static int check_shares(const struct crowd *c, int cell, unsigned long seed)
+/* Checks the owner weights of a cell and returns the number of its owners. */
+static int check_weights(const struct crowd *c, int cell, unsigned long seed)
 {
-  double sum = 0, shares = 0;
+  double sum = 0, weight = 0;
   int owners = 0;
   for (int i = 0; i < CROWD; i++) {
     owners += c->eps[i][cell] > 0;
     sum += c->eps[i][cell];
-    shares += c->share[i][cell];
+    weight += c->weight[i][cell];
   }
   if (sum <= 0) return 0;
   const double three_nu = 3 * c->p.scene.fluid.viscosity, total = fmin(1, sum);
   const bool between = owners > 1 || occupation_at_side(&c->p.occupation, cell % CROWD_NX, cell / CROWD_NX);
   const bool midpoint = c->p.scene.coupling.form == FORM_MIDPOINT;
-  const double damping = between ? 0.5 : fmin(0.5, 0.006 / three_nu), most = midpoint ? 1 / (1 + damping) : 1;
-  const double whole = fmin(most, total * three_nu / (1 - total + three_nu * (midpoint ? total : 1))); /* weight.h */
+  const double damping = between ? 0.5 : fmin(0.5, 0.006 / three_nu), max_weight = midpoint ? 1 / (1 + damping) : 1;
+  const double whole =
+      fmin(max_weight, total * three_nu / (1 - total + three_nu * (midpoint ? total : 1))); /* weight.h */
   const double accuracy = 1e-14 + 1e-15 / three_nu; /* change of B by round-off in eps */
-  cr_expect_float_eq(shares, whole, accuracy, "seed %lu, cell %d: %.17g, not %.17g", seed, cell, shares, whole);
+  cr_expect_float_eq(weight, whole, accuracy, "seed %lu, cell %d: %.17g, not %.17g", seed, cell, weight, whole);
   for (int i = 0; i < CROWD; i++)
-    cr_expect_float_eq(c->share[i][cell], c->eps[i][cell] / sum * whole, accuracy, "seed %lu, cell %d, disc %d", seed,
+    cr_expect_float_eq(c->weight[i][cell], c->eps[i][cell] / sum * whole, accuracy, "seed %lu, cell %d, disc %d", seed,
                        cell, i);
   return owners;
 }
@@ -570,7 +571,7 @@ Test(occupation, owners_of_a_cell_have_weights_in_proportion_to_their_fractions)
       cr_expect(worst < 1e-10, "seed %lu, disc %zu: %g", seed, i, worst);
     }
     for (int cell = 0; cell < CROWD_CELLS; cell++) {
-      const int owners = check_shares(&c, cell, seed);
+      const int owners = check_weights(&c, cell, seed);
       if (owners > most) most = owners;
     }
     end(&c.p);

@@ -45,10 +45,10 @@ static bool out_of_memory(const char *what, double bytes, struct status *status)
 /* Fails, as an invalid case, for what the machine does not have. */
 static bool is_within_budget(const char *what, double bytes, struct status *status)
 {
-  const double resident = bytes < (double)huge_page ? 0 : memory_resident(), most = memory_physical();
-  if (resident + bytes <= most) return true;
+  const double resident = bytes < (double)huge_page ? 0 : memory_resident(), physical = memory_physical();
+  if (resident + bytes <= physical) return true;
   status_fail(status, DELBM_INVALID, "too large for this machine: %.3g GiB for %s beside %.3g GiB in use, of %.3g GiB",
-              bytes / gib, what, resident / gib, most / gib);
+              bytes / gib, what, resident / gib, physical / gib);
   status->out_of_memory = true;
   return false;
 }

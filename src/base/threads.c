@@ -6,9 +6,9 @@
 
 int threads_for(int64_t cells)
 {
-  const int64_t shares = cells / 4096;
-  const int most = omp_get_max_threads();
-  return shares < 1 ? 1 : shares < most ? (int)shares : most;
+  const int64_t useful = cells / 4096;
+  const int max = omp_get_max_threads();
+  return useful < 1 ? 1 : useful < max ? (int)useful : max;
 }
 
 void threads_binding(char text[THREADS_TEXT])

@@ -4,8 +4,8 @@
 
 static size_t smallest(size_t a, size_t b, size_t c)
 {
-  size_t least = a < b ? a : b;
-  return least < c ? least : c;
+  size_t min = a < b ? a : b;
+  return min < c ? min : c;
 }
 
 size_t edit_distance(const char *a, const char *b)

@@ -10,11 +10,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static const double most_cells = 8589934592.0; /* 2^33 */
-static const double cell_bytes = 72;           /* nine populations in double precision */
-static const double most_discs = 5e7;
-static const double most_cover = 4; /* the discs' areas together, of the box */
-static const double clearance = 4;  /* cells between a disc and its own image across a periodic axis */
+static const double max_cells = 8589934592.0; /* 2^33 */
+static const double cell_bytes = 72;          /* nine populations in double precision */
+static const double max_discs = 5e7;
+static const double max_cover = 4; /* the discs' areas together, of the box */
+static const double clearance = 4; /* cells between a disc and its own image across a periodic axis */
 
 static const double gib = 1 << 30;
 
@@ -22,7 +22,7 @@ static void check_cells(struct draft *draft)
 {
   const int *size = draft->scene.domain.size;
   double cells = (double)size[0] * size[1];
-  if (draft_knows(draft, "domain.size") && cells > most_cells)
+  if (draft_knows(draft, "domain.size") && cells > max_cells)
     draft_refuse(draft, "domain.size", "at most 2^33 cells; these would take %.0f GiB at 72 bytes a cell",
                  cells * cell_bytes / gib);
 }
@@ -252,9 +252,9 @@ static void check_cover(struct draft *draft, const struct tree_node *list)
     const double radius = draft->scene.particles.discs[i].radius;
     if (disc_known(list, i)) covered += fmin(M_PI * radius * radius, box);
   }
-  if (draft_knows(draft, "domain.size") && covered > most_cover * box)
+  if (draft_knows(draft, "domain.size") && covered > max_cover * box)
     draft_refuse(draft, "particles.discs", "discs that together cover the box at most %g times, not %.4g times",
-                 most_cover, covered / box);
+                 max_cover, covered / box);
 }
 
 /* A disc deep in a side, or in another disc, leaves it faster than fluid can follow. */
@@ -263,15 +263,15 @@ static void check_depth(struct draft *draft, const struct case_overlap *overlap)
   const bool side = case_overlap_is_with_side(overlap);
   char path[DISC_PATH];
   disc_path(path, overlap->a, "position");
-  if (side && overlap->depth > most_depth_in_side)
+  if (side && overlap->depth > max_depth_in_side)
     draft_refuse(
         draft, path,
         "at most %g cells beyond a side, not %.3g beyond the %s one, for fluid to follow as the disc leaves it",
-        most_depth_in_side, overlap->depth, side_name_text((enum side_name)(overlap->b - overlap_sides)));
-  if (!side && overlap->depth > most_depth_in_disc)
+        max_depth_in_side, overlap->depth, side_name_text((enum side_name)(overlap->b - overlap_sides)));
+  if (!side && overlap->depth > max_depth_in_disc)
     draft_refuse(draft, path,
                  "at most %g cells within another disc, not %.3g within disc %zu, for fluid to follow as they part",
-                 most_depth_in_disc, overlap->depth, overlap->b);
+                 max_depth_in_disc, overlap->depth, overlap->b);
 }
 
 /* How far a disc of this speed, `gap` before a side, goes beyond it: its energy on arrival, after drag (coefficient 1), with
@@ -296,12 +296,12 @@ static void check_impact(struct draft *draft, size_t i)
     if (scene->domain.side[side].type == SIDE_PERIODIC || speed <= 0) continue;
     const double depth = depth_of_impact(draft, disc, fmax(0, gap), speed);
     char path[DISC_PATH];
-    if (depth > most_depth_in_side)
+    if (depth > max_depth_in_side)
       draft_refuse(
           draft, disc_path(path, i, "velocity"),
           "one that takes the disc at most %g cells beyond the %s side, not %.3g; a larger contact.stiffness stops "
           "it sooner",
-          most_depth_in_side, side_name_text(side), depth);
+          max_depth_in_side, side_name_text(side), depth);
   }
 }
 
@@ -366,9 +366,9 @@ static void check_count(struct draft *draft, const double region[4])
     return;
   }
   double discs = columns * rows + (double)draft->scene.particles.listed;
-  if (discs > most_discs)
+  if (discs > max_discs)
     draft_refuse(draft, "particles.fill.spacing", "at most %.0f discs; these would be %.0f and take %.1f GiB to list",
-                 most_discs, discs, discs * sizeof(struct disc_spec) / gib);
+                 max_discs, discs, discs * sizeof(struct disc_spec) / gib);
 }
 
 /* A region that ended with the box ends with it also where the box has been rounded to whole cells. */

@@ -313,10 +313,10 @@ static char *name_case(const char *file, struct status *status)
 /* All that can be read, up to one byte more than is allowed. */
 static bool read_stream(FILE *stream, char **bytes, size_t *size, struct status *status)
 {
-  const size_t most = ((size_t)SCENE_FILE_MIB << 20) + 1;
+  const size_t max_size = ((size_t)SCENE_FILE_MIB << 20) + 1;
   size_t capacity = 0, read = 1;
-  for (*size = 0; *size < most && read > 0; *size += read) {
-    size_t room = *size + (1 << 16) < most ? *size + (1 << 16) : most;
+  for (*size = 0; *size < max_size && read > 0; *size += read) {
+    size_t room = *size + (1 << 16) < max_size ? *size + (1 << 16) : max_size;
     if (!memory_grow(bytes, &capacity, room, 1, "the case file", status)) return false;
     read = fread(*bytes + *size, 1, room - *size, stream);
   }

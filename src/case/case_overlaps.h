@@ -28,7 +28,7 @@ void case_overlaps_clear(struct case_overlaps *found);
  * moves away likewise. Fluid under a disc moves with it, so that one which leaves a side by h thins the fluid beside the
  * side by exp(-h), but for what flows in through the cells there: from 5 cells on this ended in fluid without density
  * or above Mach 0.6 (radii 2 to 10, densities 0.1 to 50, viscosities 0.005 to 0.5). */
-static const double most_depth_in_side = 4, most_depth_in_disc = 8;
+static const double max_depth_in_side = 4, max_depth_in_disc = 8;
 
 static inline bool case_overlap_is_with_side(const struct case_overlap *overlap)
 {

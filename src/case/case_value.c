@@ -113,7 +113,7 @@ enum fault {
 };
 
 /* Largest change of a converted number by rounding to a whole one, as a part of it. One below 1e-9 is round-off. */
-static const double most_rounding = 0.1;
+static const double max_rounding = 0.1;
 
 /* A number with a unit, in the key's own. */
 static enum fault convert(const struct key *key, const char *text, const struct units *units, double *number)
@@ -126,7 +126,7 @@ static enum fault convert(const struct key *key, const char *text, const struct 
   *number = unit_convert(*number, &from, &to);
   if (!is_integral(key->kind)) return FAULT_NONE;
   const double whole = round(*number);
-  if (fabs(*number - whole) > most_rounding * fabs(*number)) return FAULT_NOT_WHOLE;
+  if (fabs(*number - whole) > max_rounding * fabs(*number)) return FAULT_NOT_WHOLE;
   *number = whole;
   return FAULT_NONE;
 }

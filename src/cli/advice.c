@@ -72,7 +72,7 @@ static bool is_under_moving_side(const struct scene *scene, const struct disc_sp
  * a lid", and piles. */
 static void advise_form_inside(const struct scene *scene)
 {
-  const double least_rim = 0.1; /* of unified */
+  const double min_rim = 0.1; /* of unified */
   const bool owen = scene->coupling.form == FORM_OWEN;
   size_t free_discs = 0;
   if (scene->coupling.form == FORM_MIDPOINT) return;
@@ -80,7 +80,7 @@ static void advise_form_inside(const struct scene *scene)
     const struct disc_spec *disc = &scene->particles.discs[i];
     const double rim = disc->radius * fabs(disc->spin);
     free_discs += disc->motion == DISC_FREE;
-    if (disc->motion == DISC_FREE || !(owen ? rim > 0 || is_under_moving_side(scene, disc) : rim > least_rim)) continue;
+    if (disc->motion == DISC_FREE || !(owen ? rim > 0 || is_under_moving_side(scene, disc) : rim > min_rim)) continue;
     printf(
         "  note: with form: %s the fluid inside disc %zu, which %s, gains until the run diverges; form: midpoint does "
         "not (bench/STABILITY.md)\n",

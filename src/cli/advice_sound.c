@@ -14,7 +14,7 @@
 #include <math.h>
 #include <stdio.h>
 
-static const double near_factor = 3.5, short_box = 1.5, least_reynolds = 47;
+static const double near_factor = 3.5, short_box = 1.5, min_reynolds = 47;
 
 /* Strouhal number of a cylinder's shedding: the fit of Williamson 1988 (Phys. Fluids 31, 2742) up to Re 180, and
  * about 0.2 beyond. */
@@ -54,7 +54,7 @@ void advise_sound(const struct scene *scene)
     for (size_t i = 0; i < scene->particles.count; i++) {
       const struct disc_spec *disc = &scene->particles.discs[i];
       const double reynolds = 2 * disc->radius * speed / scene->fluid.viscosity;
-      if (disc->motion != DISC_FIXED || reynolds <= least_reynolds) continue;
+      if (disc->motion != DISC_FIXED || reynolds <= min_reynolds) continue;
       const double shedding = strouhal(reynolds) * speed / (2 * disc->radius);
       if (tone > near_factor * shedding || shedding > near_factor * tone) continue;
       printf("  note: sound between the %s sides rings %.3g times a step, and disc %zu sheds vortices about %.3g times "

@@ -271,7 +271,7 @@ static double bytes_of_output(const struct scene *scene)
 
 static bool print_memory(const struct scene *scene, struct status *status)
 {
-  const double mib = 1 << 20, most = memory_physical();
+  const double mib = 1 << 20, physical = memory_physical();
   struct simulation_memory memory;
   const double program = 10 * mib; /* measured with an empty box: code, libraries, stacks */
   if (!simulation_measure(scene, &memory, status)) {
@@ -284,7 +284,8 @@ static bool print_memory(const struct scene *scene, struct status *status)
   if (scene->particles.count > 0) printf(", discs %.4g MiB", memory.tables / mib);
   if (output > 0) printf(", output %.4g MiB", output / mib);
   printf(", in all about %.4g MiB\n", all / mib);
-  if (all > most) printf("  note: more than the %.4g MiB of this machine; it would not be run here\n", most / mib);
+  if (all > physical)
+    printf("  note: more than the %.4g MiB of this machine; it would not be run here\n", physical / mib);
   return true;
 }
 

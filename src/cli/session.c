@@ -83,9 +83,9 @@ static bool interrupt(struct session_state *run)
 static int64_t next_chunk(int64_t chunk, int64_t steps, double seconds)
 {
   const double wanted = 0.2;
-  int64_t most = chunk < INT64_MAX / 8 ? 8 * chunk : chunk;
-  double fitting = seconds > 0 ? wanted * (double)steps / seconds : (double)most;
-  return fitting < 1 ? 1 : fitting < (double)most ? (int64_t)fitting : most;
+  int64_t max_steps = chunk < INT64_MAX / 8 ? 8 * chunk : chunk;
+  double fitting = seconds > 0 ? wanted * (double)steps / seconds : (double)max_steps;
+  return fitting < 1 ? 1 : fitting < (double)max_steps ? (int64_t)fitting : max_steps;
 }
 
 static bool run_steps(struct session_state *run)

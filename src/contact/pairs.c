@@ -78,7 +78,7 @@ static bool search_rows(struct search *s, const struct row *low, const struct ro
     const int from = run->x - s->cells - high->shift, end = run->x + run->n + s->cells - high->shift;
     while (open < high->count && high->runs[open].x + high->runs[open].n <= from) open++;
     for (size_t h = open; h < high->count && high->runs[h].x < end; h++)
-      if (high->runs[h].x + high->runs[h].n > from && !test_pair(s, run->disc, high->runs[h].disc, status))
+      if (high->runs[h].x + high->runs[h].n > from && !test_pair(s, run->owner, high->runs[h].owner, status))
         return false;
   }
   return true;

@@ -153,9 +153,9 @@ static struct gathered add_up(const struct occupation *o, const struct sweep_con
       const struct moment_sums *run = occupation_sums(o, disc, k, piece, &y);
       if (!run) continue;
       const double ry = y + 0.5 - o->y[disc];
-      const double px = run->jx + gx * run->mass + zx * run->share;
+      const double px = run->jx + gx * run->mass + zx * run->sum_weight;
       g.px += 2 * px;
-      g.py += 2 * (run->jy + gy * run->mass + zy * run->share);
+      g.py += 2 * (run->jy + gy * run->mass + zy * run->sum_weight);
       g.l += 2 * (run->turn + gy * run->mx + zy * run->sx - ry * px);
       g.m0 += 2 * run->mass;
       g.m1x += 2 * run->mx;

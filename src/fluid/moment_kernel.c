@@ -73,7 +73,7 @@ void KERNEL(gather_row)(void *const a[Q], const struct run *runs, size_t count, 
 {
   for (size_t r = 0; r < count; r++)
     if (runs[r].n > 0)
-      *(lanes_in_moments *)&sums[r] = gather_run(a, runs[r].x, runs[r].n, owner_weight + runs[r].share, runs[r].rx);
+      *(lanes_in_moments *)&sums[r] = gather_run(a, runs[r].x, runs[r].n, owner_weight + runs[r].first, runs[r].rx);
 }
 
 /* Stores eight elements in a row buffer, or adds to them. */
@@ -120,7 +120,7 @@ void KERNEL(paint_row)(const struct solid_row *row, int nx, const struct run *ru
     if (run->n == 0) continue;
     const bool apart = run->x >= painted;
     known = put_zeros(row, known, apart ? run->x : end);
-    put_run(row, run, owner_weight + run->share, &surface[run->disc], !apart);
+    put_run(row, run, owner_weight + run->first, &surface[run->owner], !apart);
     if (apart && known < end) known = run->x + ((run->n + LANES - 1) & -LANES);
     if (painted < end) painted = end;
   }

@@ -5,16 +5,16 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Cells x .. x + n - 1 of one disc in one row of the box, wrapped and cut at sides; n = 0 if the disc is near
- * without a cell. */
+/* Cells x .. x + n - 1 of one body in one row of the box, wrapped at periodic sides and cut at others. Each cell of a run
+ * has an owner weight w_p B: B is the weight of the cell (weight.h), w_p the part of owner p in its occupation fraction. */
 struct run {
   int32_t x, n;
-  uint32_t disc;
-  uint32_t share; /* index of the first cell in share[] of the band */
-  double rx, ry;  /* from the disc's centre to the centre of the first cell */
+  uint32_t owner; /* index of the body */
+  uint32_t first; /* index of the first cell's owner weight in the band's array (occupation.h) */
+  double rx, ry;  /* from the owner's centre to the centre of the first cell */
 };
 
-/* Sums over a run of cells of one disc (exchange.h), with s = w_p B, r the lever arm along the row and moments of
+/* Sums over a run of cells (exchange.h), with owner weight s = w_p B, r the lever arm along the row and moments of
  * the populations before the collision. They exclude the step's force F = rho g + uniform, which is known only
  * later; its part is derived from the sums of s, s r, s rho and s rho r. One cache line. */
 struct moment_sums {
@@ -24,7 +24,7 @@ struct moment_sums {
   double mass;            /* s rho, */
   double mx;              /* s rho r, */
   double mxx;             /* s rho r^2, */
-  double share;           /* s, */
+  double sum_weight;      /* s, */
   double sx;              /* s r */
 };
 

@@ -35,15 +35,15 @@ typedef void sweep_row(void *const a[Q], int n, const struct sweep_constants *co
 /* The same for fluid alone without force, from one set of addresses to another. */
 typedef void sweep_row_between(void *const from[Q], void *const to[Q], int n, const struct sweep_constants *constants);
 
-/* The sums of each of `count` runs of a row, with populations read from a[i][x]; share[] has w_p B of the cells of
- * all runs. Up to seven elements past the end of the populations and of share[] are read. */
-typedef void gather_row(void *const a[Q], const struct run *runs, size_t count, const double *share,
+/* The sums of each of `count` runs of a row, with populations read from a[i][x]; owner_weight[] has w_p B of the cells of
+ * all runs. Up to seven elements past the end of the populations and of owner_weight[] are read. */
+typedef void gather_row(void *const a[Q], const struct run *runs, size_t count, const double *owner_weight,
                         struct moment_sums *sums);
 
 /* Fills the solid row of nx cells with `count` runs, from left to right, of discs that move at surface[disc]; up to
  * seven elements past its end are written. */
-typedef void paint_row(const struct solid_row *row, int nx, const struct run *runs, size_t count, const double *share,
-                       const struct surface_velocity *surface);
+typedef void paint_row(const struct solid_row *row, int nx, const struct run *runs, size_t count,
+                       const double *owner_weight, const struct surface_velocity *surface);
 
 /* True if the rates depend on the fluid's speed. */
 static inline bool rates_are_adaptive(const struct rates *rates)

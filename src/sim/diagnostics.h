@@ -8,7 +8,7 @@
 #include "solid/discs.h"
 
 /* 0.6 c_s, Mach 0.6: beyond it the low-Mach expansion of the equilibrium is invalid. */
-static const double diagnostics_fastest = 0.34641016151377546;
+static const double diagnostics_speed_limit = 0.34641016151377546;
 
 /* Sums of rho - 1 and j over all cells. */
 struct fluid_totals {

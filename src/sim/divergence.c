@@ -37,10 +37,10 @@ static enum side_name worst_outlet(const struct divergence *of, double *part)
 /* Discs that block an outlet: inflow exceeds outflow, and the pressure rises without bound. */
 static bool explain_dam(const struct divergence *of, struct status *status)
 {
-  const double least_part = 0.5;
+  const double min_part = 0.5;
   double part;
   const enum side_name outlet = worst_outlet(of, &part);
-  if (!(of->excess > large_excess) || part < least_part) return false;
+  if (!(of->excess > large_excess) || part < min_part) return false;
   status_add(status,
              "; the box holds %.0f %% more fluid than at rest, as more enters than leaves: discs may close an outlet "
              "(they lie before %.0f %% of the %s side)",
@@ -172,10 +172,10 @@ static bool explain_squeeze(const struct divergence *of, struct status *status)
 
 static bool explain_viscosity(const struct divergence *of, struct status *status)
 {
-  const double least = (estimate_min_tau - 0.5) / 3;
-  if (of->scene->fluid.viscosity >= least) return false;
+  const double min_viscosity = (estimate_min_tau - 0.5) / 3;
+  if (of->scene->fluid.viscosity >= min_viscosity) return false;
   status_add(status, "; a viscosity of %g hardly damps errors; better: fluid.viscosity >= %g",
-             of->scene->fluid.viscosity, least);
+             of->scene->fluid.viscosity, min_viscosity);
   return true;
 }
 

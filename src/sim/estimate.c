@@ -159,11 +159,11 @@ double estimate_load(const struct scene *scene, int axis)
 
 size_t estimate_lightest_explicit(const struct scene *scene)
 {
-  const double least_density = 0.8;
+  const double min_density = 0.8;
   size_t lightest = scene->particles.count;
   for (size_t i = 0; i < scene->particles.count && scene->coupling.solve == SOLVE_EXPLICIT_AVERAGED; i++) {
     const struct disc_spec *disc = &scene->particles.discs[i];
-    if (disc->motion != DISC_FREE || disc->density >= least_density) continue;
+    if (disc->motion != DISC_FREE || disc->density >= min_density) continue;
     if (lightest == scene->particles.count || disc->density < scene->particles.discs[lightest].density) lightest = i;
   }
   return lightest;

@@ -110,7 +110,7 @@ static void set_row(struct flow *f, flow_initial *initial, const void *context, 
   size_t count = 0;
   const struct run *runs = discs->now ? occupation_row(discs->now, y, &count) : NULL;
   if (count > 0)
-    f->kernel->paint(row, nx, runs, count, occupation_band(discs->now, y)->share, discs->exchange->surface);
+    f->kernel->paint(row, nx, runs, count, occupation_band(discs->now, y)->owner_weight, discs->exchange->surface);
   for (int x = 0; (all || count > 0) && x < nx; x++) {
     struct covered covered = {0};
     if (count > 0)
@@ -176,7 +176,7 @@ static void sweep_row_at(struct flow *f, int y, const struct sweep_discs *discs)
     return;
   }
   const struct solid_row *solid = &f->solid_rows[omp_get_thread_num()];
-  f->kernel->paint(solid, nx, runs, count, occupation_band(o, y)->share, discs->exchange->surface);
+  f->kernel->paint(solid, nx, runs, count, occupation_band(o, y)->owner_weight, discs->exchange->surface);
   f->kernel->discs[f->scene->coupling.form][f->adaptive][terms](a, nx, &f->constants, solid, momentum);
 }
 
@@ -211,7 +211,7 @@ static void take_sums(const struct flow *f, const struct populations *p, struct 
   if (first == end) return;
   void *a[Q];
   populations_cells(p, 0, y, a);
-  f->kernel->gather(a, band->runs + first, end - first, band->share, band->sums + first);
+  f->kernel->gather(a, band->runs + first, end - first, band->owner_weight, band->sums + first);
 }
 
 void stage_first_sums(struct flow *f, struct occupation *o)

@@ -26,7 +26,8 @@ static void move_disc(const struct contacts *c, struct exchange *e, struct discs
 
 static bool too_fast(const struct discs *d, size_t i)
 {
-  const double left = diagnostics_fastest - fabs(d->omega[i]) * d->radius[i]; /* for the centre; not finite: too fast */
+  const double left =
+      diagnostics_speed_limit - fabs(d->omega[i]) * d->radius[i]; /* for the centre; not finite: too fast */
   return !(left >= 0 && d->vx[i] * d->vx[i] + d->vy[i] * d->vy[i] <= left * left);
 }
 

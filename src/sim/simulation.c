@@ -29,7 +29,8 @@ struct simulation {
   double initial_momentum[2];
   double max_mach;
   bool discs_left_rows; /* of a block: all threads leave the step (team.h) */
-  bool torn; /* a block was left unfinished: rows are at different steps, and no sum over them means anything */
+  bool
+      block_incomplete; /* a block was left unfinished: rows are at different steps, and no sum over them means anything */
 };
 
 /* Momentum that the coupling conserves, of all fluid and discs. */
@@ -130,7 +131,7 @@ void simulation_destroy(struct simulation *s)
 }
 
 /* Adds the time since *since to a stage. All threads are behind the same barrier; one of them keeps the clock. */
-static void charge(struct simulation *s, enum stage stage, double *since)
+static void add_time(struct simulation *s, enum stage stage, double *since)
 {
 #pragma omp master
   {
@@ -164,13 +165,13 @@ static bool step_discs(struct simulation *s, struct occupation *next, double *si
 {
   struct occupation *now = present(s);
   if (!stage_exchange(&s->exchange, &s->flow.constants, now, &s->discs, s->step, &s->team)) return false;
-  charge(s, STAGE_EXCHANGE, since);
+  add_time(s, STAGE_EXCHANGE, since);
   if (!stage_contact(&s->contacts, now, &s->exchange, &s->discs, &s->team)) return false;
-  charge(s, STAGE_CONTACT, since);
+  add_time(s, STAGE_CONTACT, since);
   if (!stage_motion(&s->contacts, &s->exchange, &s->discs, s->step, &s->team)) return false;
-  charge(s, STAGE_EXCHANGE, since);
+  add_time(s, STAGE_EXCHANGE, since);
   if (next != now && !stage_occupation(next, &s->discs, &s->team)) return false;
-  charge(s, STAGE_OCCUPATION, since);
+  add_time(s, STAGE_OCCUPATION, since);
   return true;
 }
 
@@ -194,7 +195,7 @@ static bool step(struct simulation *s, const struct rows *rows, double *since)
     }
   }
   stage_sweep(&s->flow, rows, &discs);
-  charge(s, STAGE_SWEEP, since);
+  add_time(s, STAGE_SWEEP, since);
   return true;
 }
 
@@ -264,14 +265,14 @@ static void run_near_block(struct simulation *s, const struct near_rows *near, i
   {
     double since = clock_now();
     stage_sweep_ahead(&s->flow, near, steps);
-    charge(s, STAGE_SWEEP, &since);
+    add_time(s, STAGE_SWEEP, &since);
     for (int k = 0; k < steps; k++) {
       const struct rows rows = blocked_near_at(near, k);
       if (!step(s, &rows, &since)) break;
       count_step(s);
     }
   }
-  s->torn = s->team.failed;
+  s->block_incomplete = s->team.failed;
 }
 
 /* Steps of a scene with discs that can be blocked in time, as long as enough rows are out of their reach. */
@@ -314,7 +315,7 @@ static void explain(struct simulation *s, int x, int y, struct status *status)
 {
   struct divergence divergence = {
       .scene = s->scene, .discs = &s->discs, .step = s->step, .excess = NAN, .cell = {x, y}};
-  if (!s->torn) {
+  if (!s->block_incomplete) {
     divergence.excess = congestion(s);
     s->max_mach = fmax(s->max_mach, sqrt(3) * diagnostics_largest_speed(&s->flow.populations));
   }
@@ -331,15 +332,15 @@ bool simulation_check(struct simulation *s, struct status *status)
 {
   if (!simulation_usable(s, status)) return false;
   const struct worst_cell worst = diagnostics_worst(&s->flow.populations, s->flow.kernel->scan);
-  const double speed = sqrt(worst.speed2), mach = speed * sqrt(3), most_congestion = 0.5;
+  const double speed = sqrt(worst.speed2), mach = speed * sqrt(3), max_congestion = 0.5;
   const long long step = (long long)s->step;
   if (isnan(speed)) {
     status_fail(status, DELBM_FAILED, "diverged by step %lld: cell (%d, %d) is no longer finite", step, worst.x,
                 worst.y);
-  } else if (speed > diagnostics_fastest) {
+  } else if (speed > diagnostics_speed_limit) {
     status_fail(status, DELBM_FAILED, "diverged by step %lld: the fluid at cell (%d, %d) moves at Mach %.3g, above 0.6",
                 step, worst.x, worst.y, mach);
-  } else if (congestion(s) > most_congestion) {
+  } else if (congestion(s) > max_congestion) {
     status_fail(status, DELBM_FAILED, "diverged by step %lld: the fluid is denser than the method can describe", step);
   } else {
     s->max_mach = fmax(s->max_mach, mach);
@@ -351,7 +352,7 @@ bool simulation_check(struct simulation *s, struct status *status)
 }
 
 /* Steps up to the next look for divergence. False where one of them failed. */
-static bool advance_to_look(struct simulation *s, int64_t steps, struct status *status)
+static bool advance_to_check(struct simulation *s, int64_t steps, struct status *status)
 {
   run_steps(s, steps);
   if (!s->team.failed) return true;
@@ -368,11 +369,11 @@ bool simulation_advance(struct simulation *s, int64_t steps, struct status *stat
     tuning_start(&s->tuning, s->scene, s->threads);
   }
   if (!flow_prepare(&s->flow, s->threads, status)) return false;
-  const int64_t end = s->step + steps, look = s->scene->run.check;
+  const int64_t end = s->step + steps, check = s->scene->run.check;
   while (s->step < end) {
-    const int64_t until_look = look - s->step % look;
-    if (!advance_to_look(s, end - s->step < until_look ? end - s->step : until_look, status)) return false;
-    if (s->step % look == 0 && !simulation_check(s, status)) return false;
+    const int64_t until_check = check - s->step % check;
+    if (!advance_to_check(s, end - s->step < until_check ? end - s->step : until_check, status)) return false;
+    if (s->step % check == 0 && !simulation_check(s, status)) return false;
   }
   return true;
 }
@@ -393,7 +394,7 @@ bool simulation_save(struct simulation *s, struct store *store, struct status *s
 {
   const double max_mach = s->max_mach;
   if (!simulation_check(s, status)) return false;
-  s->max_mach = max_mach; /* saving is no look: it changes no figure of the run */
+  s->max_mach = max_mach; /* saving is no check: it changes no figure of the run */
   return store_state(s, store, status);
 }
 
@@ -414,7 +415,7 @@ static bool check_places(const struct simulation *s, const struct store *store, 
 }
 
 /* What follows from the state. */
-static bool follow_up(struct simulation *s, struct status *status)
+static bool derive_state(struct simulation *s, struct status *status)
 {
   if (!paint(s, status)) return false;
   take_first_sums(s);
@@ -423,7 +424,7 @@ static bool follow_up(struct simulation *s, struct status *status)
 
 bool simulation_changed(struct simulation *s, struct status *status)
 {
-  if (!simulation_usable(s, status) || !follow_up(s, status)) return false;
+  if (!simulation_usable(s, status) || !derive_state(s, status)) return false;
   contacts_placed(&s->contacts);
   return true;
 }
@@ -433,14 +434,14 @@ bool simulation_unchanged(struct simulation *s)
 {
   struct status ignored;
   s->team.failed = false;
-  return follow_up(s, &ignored);
+  return derive_state(s, &ignored);
 }
 
 bool simulation_restore(struct simulation *s, struct store *store, struct status *status)
 {
   if (!store_state(s, store, status) || !check_places(s, store, status)) return false;
   boundary_refill(&s->flow.boundary, &s->flow.populations);
-  return follow_up(s, status);
+  return derive_state(s, status);
 }
 
 void simulation_set_fluid(struct simulation *s, const double *density, const double *ux, const double *uy)
@@ -491,7 +492,7 @@ bool simulation_sample(struct simulation *s, const struct sample_grid *grid, con
 /* Change of the conserved momentum that body forces do not explain; NAN where something else exchanges momentum. */
 static double momentum_drift(struct simulation *s)
 {
-  if (s->torn) return NAN;
+  if (s->block_incomplete) return NAN;
   const bool closed_system = scene_is_periodic(s->scene, 0) && scene_is_periodic(s->scene, 1) &&
                              s->discs.free == s->discs.count && s->scene->coupling.solve == SOLVE_IMPLICIT;
   if (!closed_system) return NAN;
@@ -512,11 +513,11 @@ void simulation_report(struct simulation *s, struct simulation_report *report)
   const double cells = (double)s->scene->domain.size[0] * s->scene->domain.size[1];
   const struct fluid_totals totals = diagnostics_totals(&s->flow.populations);
   const struct fluid_force force = flow_force(&s->flow);
-  const double mass = s->torn ? NAN : cells + totals.excess_mass, momentum[2] = {totals.jx, totals.jy};
+  const double mass = s->block_incomplete ? NAN : cells + totals.excess_mass, momentum[2] = {totals.jx, totals.jy};
   *report = (struct simulation_report){.threads = threads_for(scene_cells(s->scene)),
                                        .kernel = s->flow.kernel->name,
                                        .times = s->times,
-                                       .mass_drift = s->torn ? NAN : fabs(totals.excess_mass) / cells,
+                                       .mass_drift = s->block_incomplete ? NAN : fabs(totals.excess_mass) / cells,
                                        .momentum_drift = momentum_drift(s),
                                        .max_mach = s->max_mach,
                                        .max_substeps = s->stages.exchange ? s->contacts.max_substeps : 1};

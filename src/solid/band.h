@@ -6,9 +6,9 @@
 #include "solid/occupation.h"
 #include "solid/solid_kernel.h"
 
-/* Of a run of the band: the index of its first fraction, and its index in place[]. */
+/* Of a run of the band: the index of its first fraction, and its index in run_index[]. */
 struct run_draft {
-  size_t cell, place;
+  size_t cell, slot;
 };
 
 struct band_draft {

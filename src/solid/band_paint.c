@@ -9,7 +9,7 @@ _Static_assert((int)BAND_ROWS <= (int)SHAPE_ROWS, "the rows of a band are comput
 enum { SLACK = SHAPE_PAD }; /* elements past a band's last share that kernels may touch */
 
 /* Rows of one disc, or of one periodic image of it, in one band. */
-struct stretch {
+struct disc_rows {
   size_t disc;
   int from, end; /* of its rows */
   int to_band;   /* what to add to such a row for one of the band */
@@ -17,30 +17,30 @@ struct stretch {
 };
 
 /* False where the image (-1, 0, 1) has no row in the band. */
-static bool stretch_of(const struct occupation *o, const struct discs *discs, int index, size_t disc, int image,
-                       struct stretch *s)
+static bool rows_in_band(const struct occupation *o, const struct discs *discs, int index, size_t disc, int image,
+                         struct disc_rows *s)
 {
   const int first_row = index * BAND_ROWS, rows = o->rows[disc];
   const int end_row = first_row + BAND_ROWS < o->size[1] ? first_row + BAND_ROWS : o->size[1];
   const int low = first_row + image * o->size[1] - o->row[disc], high = low + end_row - first_row;
   const int columns = (int)ceil(2 * discs->radius[disc]) + 2;
-  *s = (struct stretch){.disc = disc,
-                        .from = low > 0 ? low : 0,
-                        .end = high < rows ? high : rows,
-                        .to_band = -low,
-                        .inside = o->column[disc] >= 0 && o->column[disc] + columns <= o->size[0]};
+  *s = (struct disc_rows){.disc = disc,
+                          .from = low > 0 ? low : 0,
+                          .end = high < rows ? high : rows,
+                          .to_band = -low,
+                          .inside = o->column[disc] >= 0 && o->column[disc] + columns <= o->size[0]};
   return s->from < s->end;
 }
 
 /* Enters a run into its row, by its first cell, then by disc; nearly always last, as discs come along x. */
-static inline void enter_run(struct band *band, struct band_draft *draft, int row, const struct run *run,
-                             const struct run_draft *run_draft)
+static inline void insert_run(struct band *band, struct band_draft *draft, int row, const struct run *run,
+                              const struct run_draft *run_draft)
 {
   const size_t start = band->row_start[row];
   size_t at = band->row_end[row]++;
   for (; at > start; at--) {
     const struct run *before = &band->runs[at - 1];
-    if (before->x < run->x || (before->x == run->x && before->disc <= run->disc)) break;
+    if (before->x < run->x || (before->x == run->x && before->owner <= run->owner)) break;
     band->runs[at] = *before;
     draft->runs[at] = draft->runs[at - 1];
   }
@@ -50,39 +50,39 @@ static inline void enter_run(struct band *band, struct band_draft *draft, int ro
 
 /* Cells first .. end - 1 of row k of the disc, whose fractions begin at `cell`, cut to the box, as piece number `number` of that row.
  * Returns false if none is inside. */
-static bool enter_piece(const struct occupation *o, struct band *band, struct band_draft *draft,
-                        const struct stretch *s, int k, int first, int end, int shift, int number, size_t cell)
+static bool add_piece(const struct occupation *o, struct band *band, struct band_draft *draft,
+                      const struct disc_rows *s, int k, int first, int end, int shift, int number, size_t cell)
 {
   const int nx = o->size[0], low = first + shift < 0 ? 0 : first + shift, high = end + shift > nx ? nx : end + shift;
   const int cut = low - (first + shift);
   if (low >= high) return false;
   const struct run run = {.x = low,
                           .n = high - low,
-                          .disc = (uint32_t)s->disc,
+                          .owner = (uint32_t)s->disc,
                           .rx = first + 0.5 - o->x[s->disc] + cut,
                           .ry = o->row[s->disc] + k + 0.5 - o->y[s->disc]};
   const struct run_draft run_draft = {.cell = cell + (size_t)cut,
-                                      .place = 2 * (o->first_row[s->disc] + (size_t)k) + (size_t)number};
-  enter_run(band, draft, k + s->to_band, &run, &run_draft);
+                                      .slot = 2 * (o->first_row[s->disc] + (size_t)k) + (size_t)number};
+  insert_run(band, draft, k + s->to_band, &run, &run_draft);
   return true;
 }
 
 /* The runs of row k of the disc: in a periodic box up to two pieces. */
-static void enter_row(const struct occupation *o, struct band *band, struct band_draft *draft, const struct stretch *s,
-                      int k, int first, int end, size_t cell)
+static void add_row(const struct occupation *o, struct band *band, struct band_draft *draft, const struct disc_rows *s,
+                    int k, int first, int end, size_t cell)
 {
   if (s->inside || !o->periodic[0]) {
-    enter_piece(o, band, draft, s, k, first, end, 0, 0, cell);
+    add_piece(o, band, draft, s, k, first, end, 0, 0, cell);
     return;
   }
   const int shifts[3] = {0, o->size[0], -o->size[0]};
   for (int n = 0, count = 0; n < 3 && count < 2; n++)
-    count += enter_piece(o, band, draft, s, k, first, end, shifts[n], count, cell);
+    count += add_piece(o, band, draft, s, k, first, end, shifts[n], count, cell);
 }
 
 /* The runs of a stretch, and the fractions of their cells, which begin at `cells`; sets where they end. */
-static bool paint_stretch(struct occupation *o, struct band *band, struct band_draft *draft, const struct discs *discs,
-                          const struct stretch *s, size_t *cells, struct status *status)
+static bool paint_rows(struct occupation *o, struct band *band, struct band_draft *draft, const struct discs *discs,
+                       const struct disc_rows *s, size_t *cells, struct status *status)
 {
   const size_t disc = s->disc;
   const struct shape *shape = &discs->shape[disc];
@@ -96,22 +96,22 @@ static bool paint_stretch(struct occupation *o, struct band *band, struct band_d
     return false;
   shape->kind->fractions(shape, &pose, o->row[disc] + s->from, 0, rows, &e, draft->eps + cell);
   for (int k = 0; k < rows; k++) {
-    enter_row(o, band, draft, s, s->from + k, column + e.first[k], column + e.end[k], cell);
+    add_row(o, band, draft, s, s->from + k, column + e.first[k], column + e.end[k], cell);
     cell += (size_t)(e.end[k] - e.first[k]);
   }
   return true;
 }
 
 /* Room for the runs of each row: as many as there may be. */
-static bool make_room(struct occupation *o, int index, const struct discs *discs, struct band_draft *draft,
-                      struct status *status)
+static bool reserve_runs(struct occupation *o, int index, const struct discs *discs, struct band_draft *draft,
+                         struct status *status)
 {
   struct band *band = &o->bands[index];
   size_t room[BAND_ROWS] = {0}, total = 0;
-  struct stretch s;
+  struct disc_rows s;
   for (size_t d = o->band_start[index]; d < o->band_start[index + 1]; d++)
     for (int image = -o->periodic[1]; image <= o->periodic[1]; image++)
-      if (stretch_of(o, discs, index, o->band_discs[d], image, &s))
+      if (rows_in_band(o, discs, index, o->band_discs[d], image, &s))
         for (int k = s.from; k < s.end; k++) room[k + s.to_band] += s.inside || !o->periodic[0] ? 1 : 2;
   for (int k = 0; k < BAND_ROWS; k++) {
     band->row_start[k] = band->row_end[k] = total;
@@ -124,33 +124,35 @@ static bool make_room(struct occupation *o, int index, const struct discs *discs
 
 /* The shares of a run of row y, whose cells are taken to have one owner. What a kernel writes past the end of a run is
  * overwritten by the next. */
-static void lay_out_run(const struct occupation *o, const struct run *run, int y, const double *eps, double *share)
+static void weigh_run(const struct occupation *o, const struct run *run, int y, const double *eps, double *owner_weight)
 {
-  const double damping = o->damping[run->disc];
+  const double damping = o->damping[run->owner];
   const int last = run->n - 1;
-  o->kernel->weights(eps, run->n, occupation_law(o, damping, occupation_row_at_side(o, y)), share);
+  o->kernel->weights(eps, run->n, occupation_law(o, damping, occupation_row_at_side(o, y)), owner_weight);
   if (o->periodic[0] || (run->x > 0 && run->x + last < o->size[0] - 1)) return;
-  if (occupation_at_side(o, run->x, y)) share[0] = weight_of(occupation_law(o, damping, true), eps[0]);
-  if (occupation_at_side(o, run->x + last, y)) share[last] = weight_of(occupation_law(o, damping, true), eps[last]);
+  if (occupation_at_side(o, run->x, y)) owner_weight[0] = weight_of(occupation_law(o, damping, true), eps[0]);
+  if (occupation_at_side(o, run->x + last, y))
+    owner_weight[last] = weight_of(occupation_law(o, damping, true), eps[last]);
 }
 
-static bool lay_out_shares(struct occupation *o, int index, const struct band_draft *draft, size_t cells,
-                           struct status *status)
+static bool weigh_runs(struct occupation *o, int index, const struct band_draft *draft, size_t cells,
+                       struct status *status)
 {
   struct band *band = &o->bands[index];
-  uint32_t share = 0;
+  uint32_t first = 0;
   if (cells > UINT32_MAX - SLACK)
     return status_fail(status, DELBM_FAILED, "%zu covered cells in %d rows are more than a band can hold", cells,
                        BAND_ROWS);
-  if (!memory_grow(&band->share, &band->share_capacity, cells + SLACK, sizeof *band->share, "a band's cells", status))
+  if (!memory_grow(&band->owner_weight, &band->weight_capacity, cells + SLACK, sizeof *band->owner_weight,
+                   "a band's cells", status))
     return false;
   for (int k = 0; k < BAND_ROWS; k++)
     for (size_t r = band->row_start[k]; r < band->row_end[k]; r++) {
       struct run *run = &band->runs[r];
-      run->share = share;
-      o->place[draft->runs[r].place] = r;
-      lay_out_run(o, run, index * BAND_ROWS + k, draft->eps + draft->runs[r].cell, band->share + share);
-      share += (uint32_t)run->n;
+      run->first = first;
+      o->run_index[draft->runs[r].slot] = r;
+      weigh_run(o, run, index * BAND_ROWS + k, draft->eps + draft->runs[r].cell, band->owner_weight + first);
+      first += (uint32_t)run->n;
     }
   return true;
 }
@@ -160,12 +162,12 @@ bool band_paint(struct occupation *o, int index, const struct discs *discs, stru
 {
   struct band *band = &o->bands[index];
   size_t cells = 0;
-  struct stretch s;
-  if (!make_room(o, index, discs, draft, status)) return false;
+  struct disc_rows s;
+  if (!reserve_runs(o, index, discs, draft, status)) return false;
   for (size_t d = o->band_start[index]; d < o->band_start[index + 1]; d++)
     for (int image = -o->periodic[1]; image <= o->periodic[1]; image++)
-      if (stretch_of(o, discs, index, o->band_discs[d], image, &s) &&
-          !paint_stretch(o, band, draft, discs, &s, &cells, status))
+      if (rows_in_band(o, discs, index, o->band_discs[d], image, &s) &&
+          !paint_rows(o, band, draft, discs, &s, &cells, status))
         return false;
-  return lay_out_shares(o, index, draft, cells, status);
+  return weigh_runs(o, index, draft, cells, status);
 }

@@ -29,13 +29,14 @@ static void share_cell(struct occupation *o, struct band *band, const struct ove
   for (; end < e->count && e->row[end].x <= x; end++) {
     if (!covers(&e->row[end], x)) continue;
     total += fraction(e, end, x);
-    damping = fmax(damping, o->damping[e->row[end].disc]);
+    damping = fmax(damping, o->damping[e->row[end].owner]);
     owners += fraction(e, end, x) > 0;
   }
   if (owners < 2) return;
   const double weight = weight_of(occupation_law(o, damping, true), fmin(1, total)) / total;
   for (size_t r = e->first; r < end; r++)
-    if (covers(&e->row[r], x)) band->share[e->row[r].share + (size_t)(x - e->row[r].x)] = fraction(e, r, x) * weight;
+    if (covers(&e->row[r], x))
+      band->owner_weight[e->row[r].first + (size_t)(x - e->row[r].x)] = fraction(e, r, x) * weight;
   band->shared_cells++;
   band->shared_owners += owners;
 }

@@ -30,8 +30,8 @@ static double disc_segment(double radius, double half_chord, double x)
 struct lens lens_of_discs(double ra, double rb, double d)
 {
   if (d >= ra + rb) return (struct lens){0, 0};
-  const double least = fmin(ra, rb);
-  if (d <= fabs(ra - rb)) return (struct lens){M_PI * least * least, 0};
+  const double smaller = fmin(ra, rb);
+  if (d <= fabs(ra - rb)) return (struct lens){M_PI * smaller * smaller, 0};
   const double product = (ra + rb - d) * (d + ra - rb) * (d - ra + rb) * (d + ra + rb);
   const double half_chord = sqrt(product) / (2 * d);
   if (ra == rb) return (struct lens){2 * disc_segment(ra, half_chord, d / 2), 2 * half_chord};

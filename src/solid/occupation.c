@@ -9,7 +9,7 @@
 #include <string.h>
 
 /* Rows and columns that a disc can touch. */
-static size_t most_lines(double radius)
+static size_t max_lines(double radius)
 {
   return (size_t)ceil(2 * radius) + 2;
 }
@@ -26,13 +26,13 @@ static bool allocate(struct occupation *o, size_t rows, struct status *status)
          (o->row = memory_allocate(n, sizeof *o->row, what, status)) &&
          (o->rows = memory_allocate(n, sizeof *o->rows, what, status)) &&
          (o->moved = memory_allocate(n, sizeof *o->moved, what, status)) &&
-         (o->was_row = memory_allocate(n, sizeof *o->was_row, what, status)) &&
-         (o->was_rows = memory_allocate(n, sizeof *o->was_rows, what, status)) &&
+         (o->old_row = memory_allocate(n, sizeof *o->old_row, what, status)) &&
+         (o->old_rows = memory_allocate(n, sizeof *o->old_rows, what, status)) &&
          (o->first_row = memory_allocate(n, sizeof *o->first_row, what, status)) &&
-         (o->place = memory_allocate(2 * rows, sizeof *o->place, what, status)) &&
+         (o->run_index = memory_allocate(2 * rows, sizeof *o->run_index, what, status)) &&
          (o->order = memory_allocate(n, sizeof *o->order, what, status)) &&
          (o->band_start = memory_allocate(bands + 1, sizeof *o->band_start, what, status)) &&
-         (o->stale = memory_allocate(bands, sizeof *o->stale, what, status)) &&
+         (o->changed = memory_allocate(bands, sizeof *o->changed, what, status)) &&
          (o->bands = memory_allocate(bands, sizeof *o->bands, what, status));
 }
 
@@ -47,7 +47,7 @@ bool occupation_create(struct occupation *o, const struct scene *scene, const st
                            .discs = discs->count,
                            .band_count = (scene->domain.size[1] + BAND_ROWS - 1) / BAND_ROWS};
   size_t rows = 0;
-  for (size_t i = 0; i < discs->count; i++) rows += most_lines(discs->radius[i]);
+  for (size_t i = 0; i < discs->count; i++) rows += max_lines(discs->radius[i]);
   if (!allocate(o, rows, status)) {
     occupation_destroy(o);
     return false;
@@ -56,7 +56,7 @@ bool occupation_create(struct occupation *o, const struct scene *scene, const st
   for (size_t i = 0; i < discs->count; i++) {
     o->order[i] = (uint32_t)i;
     o->first_row[i] = rows;
-    rows += most_lines(discs->radius[i]);
+    rows += max_lines(discs->radius[i]);
   }
   return true;
 }
@@ -65,7 +65,7 @@ void occupation_destroy(struct occupation *o)
 {
   for (int k = 0; o->bands && k < o->band_count; k++) {
     free(o->bands[k].runs);
-    free(o->bands[k].share);
+    free(o->bands[k].owner_weight);
     free(o->bands[k].sums);
   }
   for (size_t t = 0; t < o->draft_count; t++) {
@@ -73,8 +73,8 @@ void occupation_destroy(struct occupation *o)
     free(o->drafts[t].eps);
   }
   void *const arrays[] = {o->x,     o->y,          o->angle,      o->damping,  o->column,    o->row,
-                          o->rows,  o->moved,      o->was_row,    o->was_rows, o->first_row, o->place,
-                          o->order, o->band_start, o->band_discs, o->stale,    o->bands,     o->drafts};
+                          o->rows,  o->moved,      o->old_row,    o->old_rows, o->first_row, o->run_index,
+                          o->order, o->band_start, o->band_discs, o->changed,  o->bands,     o->drafts};
   for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; k++) free(arrays[k]);
   *o = (struct occupation){0};
 }
@@ -89,8 +89,8 @@ static void locate(struct occupation *o, const struct discs *discs, size_t i)
   o->moved[i] = !(o->painted && same_cells && o->damping[i] == damping);
   if (!o->moved[i]) return;
   const struct shape_box box = kind->box(&discs->shape[i], &pose);
-  o->was_row[i] = o->row[i];
-  o->was_rows[i] = o->rows[i];
+  o->old_row[i] = o->row[i];
+  o->old_rows[i] = o->rows[i];
   o->x[i] = pose.x;
   o->y[i] = pose.y;
   o->angle[i] = pose.angle;
@@ -98,7 +98,7 @@ static void locate(struct occupation *o, const struct discs *discs, size_t i)
   o->column[i] = box.column;
   o->row[i] = box.row;
   o->rows[i] = box.rows;
-  for (size_t k = 0; k < 2 * (size_t)o->rows[i]; k++) o->place[2 * o->first_row[i] + k] = no_run;
+  for (size_t k = 0; k < 2 * (size_t)o->rows[i]; k++) o->run_index[2 * o->first_row[i] + k] = no_run;
 }
 
 /* Insertion sort: discs keep their order from step to step but for a few. */
@@ -141,12 +141,12 @@ static bool sort_from_scratch(struct occupation *o, struct status *status)
 
 /* Visits each band that rows low .. high touch, once, from the lowest on. */
 struct band_walk {
-  int y, high, opening, previous;
+  int y, high, first, previous;
 };
 
 static struct band_walk walk_bands(const struct occupation *o, int row, int rows)
 {
-  struct band_walk walk = {.y = row, .high = row + rows - 1, .opening = -1, .previous = -1};
+  struct band_walk walk = {.y = row, .high = row + rows - 1, .first = -1, .previous = -1};
   const int ny = o->size[1];
   if (!o->periodic[1]) {
     if (walk.y < 0) walk.y = 0;
@@ -162,8 +162,8 @@ static int next_band(const struct occupation *o, struct band_walk *walk)
     const int row = band_wrap(walk->y, o->size[1]), band = row / BAND_ROWS;
     const int band_end = (band + 1) * BAND_ROWS < o->size[1] ? (band + 1) * BAND_ROWS : o->size[1];
     walk->y += band_end - row;
-    if (band == walk->previous || band == walk->opening) continue;
-    if (walk->opening < 0) walk->opening = band;
+    if (band == walk->previous || band == walk->first) continue;
+    if (walk->first < 0) walk->first = band;
     walk->previous = band;
     return band;
   }
@@ -171,15 +171,15 @@ static int next_band(const struct occupation *o, struct band_walk *walk)
 }
 
 /* Bands that a moved disc has left or come to. Returns whether there are any. */
-static bool mark_stale(struct occupation *o)
+static bool mark_changed(struct occupation *o)
 {
   bool any = !o->painted;
-  memset(o->stale, any, (size_t)o->band_count);
+  memset(o->changed, any, (size_t)o->band_count);
   for (size_t i = 0; i < o->discs && o->painted; i++) {
     if (!o->moved[i]) continue;
-    struct band_walk old = walk_bands(o, o->was_row[i], o->was_rows[i]), new = walk_bands(o, o->row[i], o->rows[i]);
-    for (int band; (band = next_band(o, &old)) >= 0; any = true) o->stale[band] = 1;
-    for (int band; (band = next_band(o, &new)) >= 0; any = true) o->stale[band] = 1;
+    struct band_walk old = walk_bands(o, o->old_row[i], o->old_rows[i]), new = walk_bands(o, o->row[i], o->rows[i]);
+    for (int band; (band = next_band(o, &old)) >= 0; any = true) o->changed[band] = 1;
+    for (int band; (band = next_band(o, &new)) >= 0; any = true) o->changed[band] = 1;
   }
   return any;
 }
@@ -213,7 +213,7 @@ static bool prepare_bands(struct occupation *o, struct status *status)
 {
   const size_t threads = (size_t)omp_get_num_threads();
   size_t capacity = o->draft_count;
-  if (!mark_stale(o)) return true;
+  if (!mark_changed(o)) return true;
   if (!memory_grow(&o->drafts, &capacity, threads, sizeof *o->drafts, "the bands", status)) return false;
   if (threads > o->draft_count) {
     memset(o->drafts + o->draft_count, 0, (threads - o->draft_count) * sizeof *o->drafts);
@@ -240,7 +240,7 @@ bool stage_occupation(struct occupation *o, const struct discs *discs, struct te
 #pragma omp for schedule(static)
   for (int k = 0; k < o->band_count; k++) {
     struct band_draft *draft = &o->drafts[omp_get_thread_num()];
-    if (!o->stale[k]) continue;
+    if (!o->changed[k]) continue;
     if (band_paint(o, k, discs, draft, &status))
       band_share(o, k, draft);
     else
@@ -258,13 +258,13 @@ bool stage_occupation(struct occupation *o, const struct discs *discs, struct te
 static void add_fractions(const struct occupation *o, const struct discs *discs, const struct run *run, double *eps,
                           double *scratch)
 {
-  const struct shape *shape = &discs->shape[run->disc];
-  const struct pose pose = discs_pose(discs, run->disc);
+  const struct shape *shape = &discs->shape[run->owner];
+  const struct pose pose = discs_pose(discs, run->owner);
   const int row = (int)lround(run->ry + pose.y - 0.5), column = (int)lround(run->rx + pose.x - 0.5);
   struct row_extents e;
   shape->kind->extents(shape, &pose, row, 1, &e);
   shape->kind->fractions(shape, &pose, row, 0, 1, &e, scratch);
-  const double *from = scratch + (column - o->column[run->disc] - e.first[0]);
+  const double *from = scratch + (column - o->column[run->owner] - e.first[0]);
   for (int k = 0; k < run->n; k++) eps[run->x + k] = fmin(1, eps[run->x + k] + from[k]);
 }
 

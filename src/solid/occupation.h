@@ -35,8 +35,8 @@ struct band {
   struct run *runs;
   size_t run_capacity;
   size_t row_start[BAND_ROWS], row_end[BAND_ROWS]; /* runs of the band's row k: row_start[k] .. row_end[k] - 1 */
-  double *share;                                   /* w_p B of their cells, row by row as the sweep meets them */
-  size_t share_capacity;
+  double *owner_weight;                            /* w_p B of their cells, row by row as the sweep meets them */
+  size_t weight_capacity;
   struct moment_sums *sums; /* of each run: taken by the sweep, added up by the exchange */
   size_t sums_capacity;
   size_t shared_cells;  /* cells of the band with more than one owner */
@@ -60,15 +60,15 @@ struct occupation {
   int32_t *column;             /* of its leftmost cell, before wrapping */
   int32_t *row, *rows;         /* its lowest cell, and how many rows it covers */
   uint8_t *moved;              /* since it was last painted */
-  int32_t *was_row, *was_rows; /* of those, then */
-  size_t *first_row;           /* of the disc's rows in place[] */
-  size_t *place;               /* [2 row + piece] the run's number in its band, or no_run */
+  int32_t *old_row, *old_rows; /* of those, then */
+  size_t *first_row;           /* of the disc's rows in run_index[] */
+  size_t *run_index;           /* [2 row + piece] the run's number in its band, or no_run */
 
   uint32_t *order;      /* discs by x, then index */
   size_t *band_start;   /* [bands + 1] discs of band k: band_discs[band_start[k]] .. */
   uint32_t *band_discs; /* in the order above */
   size_t band_discs_capacity;
-  uint8_t *stale; /* of each band: to be painted anew */
+  uint8_t *changed; /* of each band: to be painted anew */
   struct band *bands;
   struct band_draft *drafts; /* of each thread: what is needed of a band only while it is painted */
   size_t draft_count;
@@ -116,8 +116,8 @@ static inline bool occupation_at_side(const struct occupation *o, int x, int y)
 /* Of cells with at most this damping in their owners; `between`: a disc and another, or a side. */
 static inline struct weight_law occupation_law(const struct occupation *o, double damping, bool between)
 {
-  const double least = between ? weight_damping_between(o->form) : 0;
-  return weight_law(o->form, o->viscosity, damping > least ? damping : least);
+  const double min_damping = between ? weight_damping_between(o->form) : 0;
+  return weight_law(o->form, o->viscosity, damping > min_damping ? damping : min_damping);
 }
 
 /* The part of each cell of row y that discs cover, min(1, sum eps_p), for all columns. `scratch` has room for the cells of
@@ -129,11 +129,11 @@ void occupation_fractions(const struct occupation *occupation, const struct disc
 static inline const struct moment_sums *occupation_sums(const struct occupation *o, size_t disc, int k, int piece,
                                                         int *y)
 {
-  const size_t place = o->place[2 * (o->first_row[disc] + (size_t)k) + (size_t)piece];
+  const size_t run = o->run_index[2 * (o->first_row[disc] + (size_t)k) + (size_t)piece];
   const int ny = o->size[1];
   *y = o->row[disc] + k;
   const int row = !o->periodic[1] ? *y : *y < 0 ? *y + ny : *y >= ny ? *y - ny : *y;
-  return place == no_run || row < 0 || row >= ny ? NULL : &occupation_band(o, row)->sums[place];
+  return run == no_run || row < 0 || row >= ny ? NULL : &occupation_band(o, row)->sums[run];
 }
 
 #endif
