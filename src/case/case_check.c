@@ -69,13 +69,13 @@ static void check_side_velocity(struct draft *draft, enum side_name s)
   if (!draft_knows(draft, keys->type) || !draft_knows(draft, keys->velocity)) return;
   bool given = draft_gives(draft, keys->velocity);
   const double normal = side->velocity[side_axis(s)];
-  if (side->type == SIDE_WALL && normal != 0)
+  const struct side_kind *kind = side_kind_of(side->type);
+  if (kind->velocity == VELOCITY_ALONG && normal != 0)
     draft_refuse(draft, keys->velocity, "a velocity along the wall, with no component in %c", axis);
-  if (side->type == SIDE_INLET && !(side_is_high(s) ? normal < 0 : normal > 0))
+  if (kind->velocity == VELOCITY_INTO && !(side_is_high(s) ? normal < 0 : normal > 0))
     draft_refuse(draft, keys->velocity, "a velocity into the box, with a component %s 0 in %c",
                  side_is_high(s) ? "<" : ">", axis);
-  if (given && side->type == SIDE_PERIODIC) draft_refuse(draft, keys->velocity, "no velocity on a periodic side");
-  if (given && side->type == SIDE_OUTLET) draft_refuse(draft, keys->velocity, "no velocity on an outlet");
+  if (given && kind->velocity == VELOCITY_NONE) draft_refuse(draft, keys->velocity, "no velocity on %s", kind->name);
 }
 
 static void check_sides(struct draft *draft)

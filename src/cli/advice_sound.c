@@ -25,7 +25,8 @@ static double strouhal(double reynolds)
 
 static bool reflects(const struct side *side)
 {
-  return side->type == SIDE_WALL || side->type == SIDE_INLET;
+  const struct side_kind *kind = side_kind_of(side->type);
+  return kind->closed || kind->velocity == VELOCITY_INTO;
 }
 
 /* The first of the two sides at the ends of an axis. */

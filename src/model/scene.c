@@ -6,6 +6,17 @@
 #include <gsl/gsl_rng.h>
 #include <stdlib.h>
 
+const struct side_kind *side_kind_of(enum side_type type)
+{
+  static const struct side_kind kinds[] = {
+      [SIDE_WALL] = {.name = "a wall", .closed = true, .sticks = true, .velocity = VELOCITY_ALONG},
+      [SIDE_PERIODIC] = {.name = "a periodic side"},
+      [SIDE_INLET] = {.name = "an inlet", .sticks = true, .velocity = VELOCITY_INTO},
+      [SIDE_OUTLET] = {.name = "an outlet"},
+  };
+  return &kinds[type];
+}
+
 void scene_clear(struct scene *scene)
 {
   free(scene->title);

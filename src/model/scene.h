@@ -167,6 +167,15 @@ static inline double rate_from_magic(double magic, double viscosity)
   return 1.0 / (0.5 + magic / (3.0 * viscosity));
 }
 
+/* What a kind of side is to everything but the sweep (fluid/side_rules.c has its rule for links). */
+struct side_kind {
+  const char *name; /* in messages */
+  bool closed;      /* no fluid passes */
+  bool sticks;      /* the fluid beside it has the side's own velocity along it */
+  enum { VELOCITY_NONE, VELOCITY_ALONG, VELOCITY_INTO } velocity; /* that may be given */
+};
+const struct side_kind *side_kind_of(enum side_type type);
+
 /* As in the keys of a case. */
 static inline const char *side_name_text(enum side_name side)
 {
@@ -203,12 +212,17 @@ static inline int64_t scene_cells(const struct scene *scene)
   return (int64_t)scene->domain.size[0] * scene->domain.size[1];
 }
 
-/* True where walls (resting or moving along themselves) close the axis, so that its mean volume flux is zero. */
+/* Of the two sides of an axis: are both closed, so that its mean volume flux is zero? How many stick? */
 static inline bool scene_is_closed(const struct scene *scene, int axis)
 {
-  const struct side *low = &scene->domain.side[axis == 0 ? SIDE_LEFT : SIDE_BOTTOM];
-  const struct side *high = &scene->domain.side[axis == 0 ? SIDE_RIGHT : SIDE_TOP];
-  return low->type == SIDE_WALL && high->type == SIDE_WALL;
+  const struct side *sides = &scene->domain.side[axis == 0 ? SIDE_LEFT : SIDE_BOTTOM];
+  return side_kind_of(sides[0].type)->closed && side_kind_of(sides[1].type)->closed;
+}
+
+static inline int scene_sticking_sides(const struct scene *scene, int axis)
+{
+  const struct side *sides = &scene->domain.side[axis == 0 ? SIDE_LEFT : SIDE_BOTTOM];
+  return side_kind_of(sides[0].type)->sticks + side_kind_of(sides[1].type)->sticks;
 }
 
 #endif

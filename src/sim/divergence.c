@@ -141,7 +141,8 @@ static enum side_name side_near(const struct divergence *of, double reach)
 {
   const double cell[2] = {of->cell[0] + 0.5, of->cell[1] + 0.5};
   for (enum side_name side = 0; side < SIDE_COUNT; side++)
-    if (of->scene->domain.side[side].type == SIDE_WALL && scene_distance_to_side(of->scene, side, cell) <= reach)
+    if (side_kind_of(of->scene->domain.side[side].type)->closed &&
+        scene_distance_to_side(of->scene, side, cell) <= reach)
       return side;
   return SIDE_COUNT;
 }

@@ -53,7 +53,9 @@ double estimate_forced(const struct scene *scene, int axis, int64_t steps)
   const double force = fabs(scene->fluid.force[axis]), height = scene->domain.size[!axis];
   if (!scene_is_periodic(scene, axis) || force == 0) return 0;
   double speed = fmin(force * (double)steps, past_fixed_discs(scene, force));
-  if (scene_is_closed(scene, !axis)) speed = fmin(speed, force * height * height / (8 * scene->fluid.viscosity));
+  const int walls = scene_sticking_sides(scene, !axis); /* two: a parabola between them; one: half of one */
+  if (scene_is_closed(scene, !axis) && walls > 0)
+    speed = fmin(speed, force * height * height / (2 * walls * walls * scene->fluid.viscosity));
   return speed;
 }
 
