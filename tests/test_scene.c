@@ -358,6 +358,19 @@ Test(scene, rates_follow_the_collision)
   scene_clear(&mrt);
 }
 
+Test(scene, slip_sides_close_an_axis_as_walls_do)
+{
+  struct scene scene =
+      scene_with("particles={gravity: [0, -0.01], discs: [{radius: 5, position: [50, 50], density: 2}]}");
+  for (int axis = 0; axis < 2; axis++) {
+    scene.domain.side[2 * axis].type = SIDE_SLIP;
+    cr_expect(scene_is_closed(&scene, axis) && scene_sticking_sides(&scene, axis) == 1);
+    scene.domain.side[2 * axis + 1].type = SIDE_SLIP;
+    cr_expect(scene_is_closed(&scene, axis) && scene_sticking_sides(&scene, axis) == 0);
+  }
+  scene_clear(&scene);
+}
+
 Test(scene, zero_flux_is_on_where_walls_close_an_axis_and_gravity_acts_on_free_discs)
 {
   static const struct {
@@ -458,7 +471,7 @@ Test(scene, override_that_is_wrong_is_named)
        "stiffness, alpha, damping, damping_form, substeps, steps_per_contact"},
       {"fluid.viscosity=thick",
        "--set fluid.viscosity=thick: fluid.viscosity: got thick; expected a number > 0 and <= 10"},
-      {"domain.left=wal", "--set domain.left=wal: domain.left.type: got wal; expected wall, periodic, inlet or outlet"},
+      {"domain.left=wal", "--set domain.left=wal: domain.left.type: got wal; expected wall, periodic, inlet, outlet or slip"},
       {"fluid", "--set fluid: expected dotted.key=value"},
       {"=3", "--set =3: expected dotted.key=value"},
       {"title=", "--set title=: expected dotted.key=value"},

@@ -69,6 +69,11 @@ Test(corners, keep_a_uniform_stream_uniform_to_round_off)
       {{0, 0.05}, {{SIDE_WALL, {0, 0.05}}, {SIDE_WALL, {0, 0.05}}, {SIDE_INLET, {0, 0.05}}, {SIDE_OUTLET, {0}}}},
       {{0.05, 0}, {{SIDE_INLET, {0.05, 0}}, {SIDE_OUTLET, {0}}, {SIDE_OUTLET, {0}}, {SIDE_WALL, {0.05, 0}}}},
       {{0.04, 0.02}, {{SIDE_INLET, {0.04, 0.02}}, {SIDE_OUTLET, {0}}, {SIDE_INLET, {0.04, 0.02}}, {SIDE_OUTLET, {0}}}},
+      {{0.05, 0}, {{SIDE_INLET, {0.05, 0}}, {SIDE_OUTLET, {0}}, {SIDE_SLIP, {0}}, {SIDE_SLIP, {0}}}},
+      {{0, -0.05}, {{SIDE_SLIP, {0}}, {SIDE_WALL, {0, -0.05}}, {SIDE_OUTLET, {0}}, {SIDE_INLET, {0, -0.05}}}},
+      {{-0.05, 0}, {{SIDE_OUTLET, {0}}, {SIDE_INLET, {-0.05, 0}}, {SIDE_OUTLET, {0}}, {SIDE_SLIP, {0}}}},
+      {{0.05, 0}, {{SIDE_PERIODIC, {0}}, {SIDE_PERIODIC, {0}}, {SIDE_SLIP, {0}}, {SIDE_SLIP, {0}}}},
+      {{0, 0.05}, {{SIDE_SLIP, {0}}, {SIDE_SLIP, {0}}, {SIDE_PERIODIC, {0}}, {SIDE_PERIODIC, {0}}}},
       {{0.04, 0.02}, {{SIDE_INLET, {0.04, 0.02}}, {SIDE_OUTLET, {0}}, {SIDE_OUTLET, {0}}, {SIDE_OUTLET, {0}}}},
   };
   double ux[NX * NY], uy[NX * NY], rho[NX * NY];
@@ -91,6 +96,61 @@ Test(corners, keep_a_uniform_stream_uniform_to_round_off)
     simulation_destroy(simulation);
     scene_clear(&scene);
   }
+}
+
+/* Driven by a body force, from rest: the flow between a wall and a slip side, and that between two walls twice as far apart. */
+Test(slip, makes_a_channel_half_of_one_of_twice_the_height)
+{
+  enum { NX = 5, NY = 12 };
+  struct scene half = scene_box(NX, NY, 0.07, SIDES_PERIODIC), whole = scene_box(NX, 2 * NY, 0.07, SIDES_PERIODIC);
+  half.domain.side[SIDE_BOTTOM].type = whole.domain.side[SIDE_BOTTOM].type = whole.domain.side[SIDE_TOP].type =
+      SIDE_WALL;
+  half.domain.side[SIDE_TOP].type = SIDE_SLIP;
+  half.fluid.force[0] = whole.fluid.force[0] = 1e-5;
+  struct simulation *a = start(&half), *b = start(&whole);
+  double of_half[NX * NY], of_whole[NX * 2 * NY];
+  for (int part = 0; part < 3; part++) {
+    advance(a, 333), advance(b, 333);
+    simulation_fields(a, NULL, of_half, NULL);
+    simulation_fields(b, NULL, of_whole, NULL);
+    cr_expect_gt(of_half[NX * NY - 1], 1e-3 * (1 + part));
+    for (int k = 0; k < NX * NY; k++)
+      cr_expect(fabs(of_half[k] - of_whole[k]) < 1e-12, "cell %d: %g, not %g", k, of_half[k], of_whole[k]);
+  }
+  simulation_destroy(a), simulation_destroy(b);
+  scene_clear(&half), scene_clear(&whole);
+}
+
+Test(slip, lets_no_fluid_through)
+{
+  struct scene scene = scene_box(31, 24, 0.05, SIDES_CLOSED);
+  scene.domain.side[SIDE_LEFT].type = scene.domain.side[SIDE_BOTTOM].type = SIDE_SLIP;
+  scene.domain.side[SIDE_TOP].velocity[0] = 0.1;
+  struct simulation *simulation = start(&scene);
+  advance(simulation, 301);
+  cr_expect_lt(fabs(excess_mass(simulation)), 1e-11);
+  simulation_destroy(simulation);
+  scene_clear(&scene);
+}
+
+/* In the first step from rest fluid plays no part yet; later the wall, at which fluid sticks, lets it out of the gap more slowly. */
+Test(slip, pushes_discs_back_as_a_wall_does)
+{
+  double force[2], x[2];
+  for (int slip = 0; slip < 2; slip++) {
+    struct scene scene = scene_box(60, 60, 0.05, SIDES_CLOSED);
+    scene_add_disc(&scene, 6, 5, 54.3, 30);
+    if (slip) scene.domain.side[SIDE_RIGHT].type = SIDE_SLIP;
+    struct simulation *simulation = start(&scene);
+    advance(simulation, 1);
+    force[slip] = simulation_discs(simulation)->contact_fx[0];
+    advance(simulation, 300);
+    x[slip] = simulation_discs(simulation)->x[0];
+    simulation_destroy(simulation);
+    scene_clear(&scene);
+  }
+  cr_expect(force[0] < 0 && fabs(force[1] / force[0] - 1) < 1e-12, "%g, %g", force[0], force[1]);
+  cr_expect(x[0] < 54.2 && x[1] < 54.2, "%g, %g", x[0], x[1]);
 }
 
 Test(duct, what_enters_at_the_inlet_leaves_through_the_outlet)

@@ -213,6 +213,12 @@ static const struct {
     {"upward", {{SIDE_PERIODIC, {0}}, {SIDE_PERIODIC, {0}}, {SIDE_INLET, {0, 0.05}}, {SIDE_OUTLET, {0}}}},
     {"downward", {{SIDE_WALL, {0}}, {SIDE_WALL, {0}}, {SIDE_OUTLET, {0}}, {SIDE_INLET, {0, -0.05}}}},
     {"three outlets", {{SIDE_INLET, {0.05, 0}}, {SIDE_OUTLET, {0}}, {SIDE_OUTLET, {0}}, {SIDE_OUTLET, {0}}}},
+    {"slip channel in x", {{SIDE_PERIODIC, {0}}, {SIDE_PERIODIC, {0}}, {SIDE_SLIP, {0}}, {SIDE_WALL, {0.1, 0}}}},
+    {"slip channel in y", {{SIDE_SLIP, {0}}, {SIDE_SLIP, {0}}, {SIDE_PERIODIC, {0}}, {SIDE_PERIODIC, {0}}}},
+    {"slip duct", {{SIDE_INLET, {0.05, 0.01}}, {SIDE_OUTLET, {0}}, {SIDE_SLIP, {0}}, {SIDE_SLIP, {0}}}},
+    {"slip ends", {{SIDE_SLIP, {0}}, {SIDE_SLIP, {0}}, {SIDE_OUTLET, {0}}, {SIDE_INLET, {0, -0.05}}}},
+    {"slip corners", {{SIDE_SLIP, {0}}, {SIDE_WALL, {0, 0.03}}, {SIDE_SLIP, {0}}, {SIDE_OUTLET, {0}}}},
+    {"slip box", {{SIDE_SLIP, {0}}, {SIDE_SLIP, {0}}, {SIDE_SLIP, {0}}, {SIDE_SLIP, {0}}}},
     {"open ends", {{SIDE_OUTLET, {0}}, {SIDE_OUTLET, {0}}, {SIDE_INLET, {0, 0.05}}, {SIDE_OUTLET, {0}}}},
 };
 

@@ -36,7 +36,7 @@ struct kind {
   int opposite; /* the kind of the side that faces it, in the table */
 };
 
-enum { RESTING, MOVING, INLET, SLANTING, OUTLET, PERIODIC, KINDS };
+enum { RESTING, MOVING, INLET, SLANTING, OUTLET, PERIODIC, SLIP, KINDS };
 
 static const struct kind kinds[KINDS] = {
     [RESTING] = {"a resting wall", SIDE_WALL, 0, 0, RESTING},
@@ -45,6 +45,7 @@ static const struct kind kinds[KINDS] = {
     [SLANTING] = {"a slanting inlet", SIDE_INLET, 0.03, 0.02, OUTLET},
     [OUTLET] = {"an outlet", SIDE_OUTLET, 0, 0, INLET},
     [PERIODIC] = {"a periodic side", SIDE_PERIODIC, 0, 0, PERIODIC},
+    [SLIP] = {"a slip side", SIDE_SLIP, 0, 0, RESTING},
 };
 
 static void set_side(struct scene *scene, enum side_name name, const struct kind *kind)
@@ -144,8 +145,15 @@ Test(fluid, is_symmetric_where_slanting_inlets_meet_inlets_and_outlets)
   for (int kind = INLET; kind <= OUTLET; kind++) expect_fluid_symmetric(SLANTING, kind);
 }
 
+/* Each has a resting wall on the other side: every slip side has corners with two kinds. */
+Test(fluid, is_symmetric_where_slip_sides_meet_any_side)
+{
+  for (int kind = 0; kind < KINDS; kind++) expect_fluid_symmetric(SLIP, kind);
+}
+
 /* Sides of boxes with discs. */
-static const int disc_boxes[][2] = {{RESTING, RESTING}, {PERIODIC, RESTING}, {PERIODIC, PERIODIC}, {INLET, PERIODIC}};
+static const int disc_boxes[][2] = {
+    {RESTING, RESTING}, {PERIODIC, RESTING}, {PERIODIC, PERIODIC}, {INLET, PERIODIC}, {PERIODIC, SLIP}};
 
 enum { DISC_BOXES = sizeof disc_boxes / sizeof disc_boxes[0] };
 

@@ -8,7 +8,7 @@
 #include <stddef.h>
 
 /* A side of the box. Velocity of a wall along itself, or of the fluid at an inlet; cells/step. */
-enum delbm_side_type { DELBM_WALL, DELBM_PERIODIC, DELBM_INLET, DELBM_OUTLET };
+enum delbm_side_type { DELBM_WALL, DELBM_PERIODIC, DELBM_INLET, DELBM_OUTLET, DELBM_SLIP };
 struct delbm_side {
   enum delbm_side_type type;
   double velocity[2];

@@ -8,7 +8,7 @@
 #include <string.h>
 
 _Static_assert(sizeof(enum side_type) == sizeof(int), "a choice is stored as an int");
-_Static_assert(SIDE_WALL == 0 && SIDE_OUTLET == 3, "order of wall|periodic|inlet|outlet");
+_Static_assert(SIDE_WALL == 0 && SIDE_SLIP == 4, "order of wall|periodic|inlet|outlet|slip");
 _Static_assert(FRAME_DISCS_PLAIN == 0 && FRAME_DISCS_RADIUS == 3, "order of plain|height|speed|radius");
 _Static_assert(COLLISION_BGK == 0 && COLLISION_MRT == 2, "order of bgk|trt|mrt");
 

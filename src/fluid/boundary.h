@@ -9,6 +9,8 @@
  *                inflow of velocity u at the reference density.
  *   periodic     the source is the cell at the other end of the row, m = i, c = 0. Rows wrap in y by their address alone
  *                (populations.h).
+ *   slip         the mirror image: target one cell along the side from the source, in the direction of e_i, m is i with its
+ *                normal component reversed, c = 0. No fluid passes, and no shear stress acts along the side.
  *   outlet       zero gradient: a ghost cell beside the source sends what the source sends, m = i, c = -w_i cut. The
  *                density of the ghost thereby lies below that of the source by
  *                  cut = h e + d,   (6/h) dd/dt = 3 d(e - j)/dt + cut - d,
@@ -23,11 +25,12 @@
  * side_rules.c has a row for each kind.
  *
  * Corners. The diagonal link that comes out of the corner of two sides, neither of them periodic, takes each component of the
- * velocity from the side normal to it, which imposes its own: that of an inlet, 0 of a wall. An outlet imposes none, and the
+ * velocity from the side normal to it, which imposes its own: that of an inlet, 0 of a wall or slip side. An outlet imposes none, and the
  * component is that of the other side, which runs into it. m has the imposed components reversed, and c is the momentum at that
  * velocity. So inlets let in exactly velocity times length, walls that run into a corner push no fluid through the other
  * wall, and a uniform stream stays uniform. At the corner of two outlets no component is imposed, and the ghost cell has the mean
- * cut of its neighbours.
+ * cut of its neighbours. A slip side imposes nothing along itself: at its corner with an outlet it reflects what the
+ * ghost cell of the outlet sends.
  *
  * Every slot that a rule writes belongs to its link, or to the ghost cell, alone (populations.h): rows may run in any
  * order that streaming allows, on any thread. */

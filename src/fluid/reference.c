@@ -104,6 +104,18 @@ static bool is_outlet(const struct side *side)
   return side && side->type == SIDE_OUTLET;
 }
 
+static bool is_slip(const struct side *side)
+{
+  return side && side->type == SIDE_SLIP;
+}
+
+/* Population i seen in a mirror that reverses x or y. */
+static size_t mirrored(int i, bool in_x)
+{
+  static const size_t image[2][Q] = {{0, 1, 4, 3, 2, 8, 7, 6, 5}, {0, 3, 2, 1, 4, 6, 5, 8, 7}};
+  return image[in_x][i];
+}
+
 static int wrap_or_clamp(int s, int n, bool periodic)
 {
   if (s >= 0 && s < n) return s;
@@ -122,6 +134,11 @@ static double streamed(const struct reference *r, const struct side side[SIDE_CO
       (size_t)wrap_or_clamp(sy, r->ny, periodic_y) * (size_t)r->nx + (size_t)wrap_or_clamp(sx, r->nx, periodic_x);
   const bool all_out = (past_x || past_y) && (!past_x || is_outlet(past_x)) && (!past_y || is_outlet(past_y));
   if (!past_x && !past_y) return r->collided[from * Q + (size_t)i];
+  const struct side *other = is_slip(past_x) ? past_y : past_x; /* beside a slip side */
+  if (is_slip(past_x) != is_slip(past_y) && (!other || is_outlet(other))) {
+    const double cut = other ? r->ghost[other - side][from].cut : 0;
+    return r->collided[from * Q + mirrored(i, is_slip(past_x))] - d2q9_weight[i] * cut;
+  }
   if (all_out) {
     const double cut_x = past_x ? r->ghost[past_x - side][from].cut : r->ghost[past_y - side][from].cut;
     const double cut_y = past_y ? r->ghost[past_y - side][from].cut : cut_x;

@@ -83,6 +83,7 @@ static const struct side_rule rules[] = {
                      .step = step_outlet,
                      .reset = reset_outlet,
                      .corner = corner_cut},
+    [SIDE_SLIP] = {.a = 1, .imposes = {true, false}},
 };
 
 const struct side_rule *side_rule_of(enum side_type type)

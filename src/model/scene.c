@@ -13,6 +13,7 @@ const struct side_kind *side_kind_of(enum side_type type)
       [SIDE_PERIODIC] = {.name = "a periodic side"},
       [SIDE_INLET] = {.name = "an inlet", .sticks = true, .velocity = VELOCITY_INTO},
       [SIDE_OUTLET] = {.name = "an outlet"},
+      [SIDE_SLIP] = {.name = "a slip side", .closed = true},
   };
   return &kinds[type];
 }

@@ -16,7 +16,7 @@ static const double scene_max_speed = 0.3;
 static const double scene_advised_speed = 0.1;
 
 enum side_name { SIDE_LEFT, SIDE_RIGHT, SIDE_BOTTOM, SIDE_TOP, SIDE_COUNT };
-enum side_type { SIDE_WALL, SIDE_PERIODIC, SIDE_INLET, SIDE_OUTLET };
+enum side_type { SIDE_WALL, SIDE_PERIODIC, SIDE_INLET, SIDE_OUTLET, SIDE_SLIP };
 enum collision { COLLISION_BGK, COLLISION_TRT, COLLISION_MRT, COLLISION_ADAPTIVE };
 enum precision { PRECISION_DOUBLE, PRECISION_SINGLE };
 enum coupling_form { FORM_UNIFIED, FORM_OWEN, FORM_MIDPOINT, FORM_COUNT };
