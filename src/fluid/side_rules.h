@@ -2,7 +2,7 @@
 #ifndef DELBM_FLUID_SIDE_RULES_H
 #define DELBM_FLUID_SIDE_RULES_H
 
-#include "fluid/boundary.h"
+#include "fluid/links.h"
 
 struct side_rule {
   double a;
