@@ -198,7 +198,7 @@ static struct contact_law law_of(double stiffness, double alpha, double damping,
 static double force_of(const struct contact_law *law, double area, double approach_speed, double damping)
 {
   struct contact_state state = {.stored = INFINITY};
-  const struct kinematics k = {.lens = {.area = area},
+  const struct kinematics k = {.overlap = {.lens = {.area = area}},
                                .approach_speed = approach_speed,
                                .mean_speed = approach_speed,
                                .compliance = 1,
@@ -228,7 +228,8 @@ Test(law, impulses_without_stored_energy_return_none)
 {
   const struct contact_law law = law_of(10, 1, 0, DAMPING_CRITICAL);
   struct contact_state state = {0};
-  struct kinematics k = {.lens = {.area = 1}, .approach_speed = -0.1, .mean_speed = -0.1, .compliance = 0.5};
+  struct kinematics k = {
+      .overlap = {.lens = {.area = 1}}, .approach_speed = -0.1, .mean_speed = -0.1, .compliance = 0.5};
   cr_expect_eq(contact_law(&law, &state, &k, 1).normal, 0, "parting discs that have stored nothing");
   state = (struct contact_state){.stored = 0.01};
   const double j = contact_law(&law, &state, &k, 1).normal;

@@ -198,7 +198,7 @@ static bool is_by_cells(const struct contacts *m, const struct contact *c)
 static int prepare(const struct contacts *m, const struct discs *d, const struct exchange *e, struct contact *c)
 {
   struct kinematics k = kinematics_of(m->scene, d, c->a, c->b, &m->at);
-  const double overlap = k.radius[0] + (contact_is_with_side(c->b) ? 0 : k.radius[1]) - k.distance;
+  const double overlap = k.radius[0] + (contact_is_with_side(c->b) ? 0 : k.radius[1]) - k.overlap.distance;
   c->damping = contact_damping(&m->law, c->inverse_mass);
   if (c->is_new && m->placed) c->state.stored = contact_energy(&m->law, k.radius, overlap);
   if (is_by_cells(m, c))
@@ -242,13 +242,14 @@ static void find_impulse(const struct contacts *m, const struct discs *d, const 
                          double h, struct contact *c)
 {
   struct kinematics k = kinematics_of(m->scene, d, c->a, c->b, &m->at);
-  if (is_by_cells(m, c)) k.lens.area = c->cells_area;
-  if (k.lens.area > 0) kinematics_respond(&k, e, c->a, c->b, h);
+  if (is_by_cells(m, c)) k.overlap.lens.area = c->cells_area;
+  if (k.overlap.lens.area > 0) kinematics_respond(&k, e, c->a, c->b, h);
   k.damping = c->damping;
   const struct contact_impulse j = contact_law(&m->law, &c->state, &k, duration);
-  const double fx = j.normal * k.nx - j.tangential * k.ny, fy = j.normal * k.ny + j.tangential * k.nx;
-  c->on_a = (struct wrench){-fx, -fy, -k.arm[0] * j.tangential};
-  if (!contact_is_with_side(c->b)) c->on_b = (struct wrench){fx, fy, -k.arm[1] * j.tangential};
+  const double fx = j.normal * k.overlap.nx - j.tangential * k.overlap.ny,
+               fy = j.normal * k.overlap.ny + j.tangential * k.overlap.nx;
+  c->on_a = (struct wrench){-fx, -fy, -k.overlap.arm[0] * j.tangential};
+  if (!contact_is_with_side(c->b)) c->on_b = (struct wrench){fx, fy, -k.overlap.arm[1] * j.tangential};
 }
 
 static void add_wrench(struct wrench *sum, const struct wrench *w)

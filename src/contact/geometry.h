@@ -1,6 +1,6 @@
-/* Geometry and kinematics of a contact of two discs a and b, or of disc a and a side of the box. The normal n points from a to b; the
- * contact point lies on the line of centres where the chord of the lens crosses it (of a side: on the side), at the arms a_a + a_b =
- * distance from the centres. */
+/* Geometry and kinematics of a contact of two discs a and b, or of disc a and a side of the box. Overlap, normal n (from a to b) and arms
+ * a_a, a_b of the contact point come from the shapes; a_a + a_b is the distance of the centroids. With t = (-n_y, n_x),
+ *   approach speed = (V_a - V_b) . n,   slip speed = (V_a - V_b) . t + omega_a a_a + omega_b a_b. */
 #ifndef DELBM_CONTACT_GEOMETRY_H
 #define DELBM_CONTACT_GEOMETRY_H
 
@@ -13,12 +13,9 @@ struct disc_motions {
 };
 
 struct kinematics {
-  struct lens lens; /* overlap area, and chord */
-  double radius[2]; /* of b: infinite for a side */
-  double distance;  /* of the centres, or of the centre of a from the side */
-  double nx, ny;    /* n */
-  double arm[2];
-  double approach_speed; /* (V_a - V_b) . n */
+  struct body_overlap overlap; /* of the shapes: n, arms, area (solid/shape.h) */
+  double radius[2];            /* of b: infinite for a side */
+  double approach_speed;       /* (V_a - V_b) . n */
   double
       slip_speed; /* (V_a - V_b) . t + omega_a a_a + omega_b a_b, t = (-n_y, n_x): of the surface of a past that of b */
   double mean_speed; /* of approach over the sub-step, without contacts */

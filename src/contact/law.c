@@ -7,7 +7,7 @@
 /* (10): proportional to the overlap area. */
 static struct spring spring_of_area(const struct contact_law *law, const struct kinematics *k)
 {
-  return (struct spring){law->stiffness * k->lens.area, law->stiffness * k->lens.chord};
+  return (struct spring){law->stiffness * k->overlap.lens.area, law->stiffness * k->overlap.lens.chord};
 }
 
 /* (8): proportional to the overlap, F = alpha k_n c delta. c is the chord of the lens at an overlap of 1 % of the smaller radius, so that
@@ -20,7 +20,7 @@ static struct spring spring_of_overlap(const struct contact_law *law, const stru
   const struct lens lens =
       side ? lens_of_wall(k->radius[0], touch - design) : lens_of_discs(k->radius[0], k->radius[1], touch - design);
   const double stiffness = law->stiffness * lens.chord;
-  return (struct spring){stiffness * fmax(0, touch - k->distance), stiffness};
+  return (struct spring){stiffness * fmax(0, touch - k->overlap.distance), stiffness};
 }
 
 /* In the order of the choices of contact.law, which name them. */
@@ -45,7 +45,7 @@ struct contact_impulse contact_law(const struct contact_law *law, struct contact
                                    const struct kinematics *k, double h)
 {
   state_count_work(state, k->approach_speed);
-  if (k->lens.area <= 0) {
+  if (k->overlap.lens.area <= 0) {
     state->stored = 0;
     return (struct contact_impulse){0};
   }
@@ -61,8 +61,9 @@ struct spring contact_spring_at(const struct contact_law *law, const double radi
 {
   struct kinematics k = {.radius = {radius[0], radius[1]}};
   const bool side = isinf(radius[1]);
-  k.distance = (side ? radius[0] : radius[0] + radius[1]) - overlap;
-  k.lens = side ? lens_of_wall(radius[0], k.distance) : lens_of_discs(radius[0], radius[1], k.distance);
+  k.overlap.distance = (side ? radius[0] : radius[0] + radius[1]) - overlap;
+  k.overlap.lens =
+      side ? lens_of_wall(radius[0], k.overlap.distance) : lens_of_discs(radius[0], radius[1], k.overlap.distance);
   return law->spring(law, &k);
 }
 

@@ -22,12 +22,29 @@ struct shape_box disc_box(const struct shape *disc, const struct pose *pose)
       .column = (int)floor(pose->x - radius), .row = row, .rows = (int)ceil(pose->y + radius) - row};
 }
 
-struct lens disc_overlap(const struct shape *disc, const struct shape *other, double dx, double dy)
+/* Distances from the centres to the chord of the lens; if one disc is inside the other, to the centre of the smaller one. */
+static void find_arms(double ra, double rb, struct body_overlap *o)
 {
-  return lens_of_discs(disc->radius, other->radius, sqrt(dx * dx + dy * dy));
+  const double difference = ra - rb;
+  const bool inside = o->distance <= fabs(difference);
+  o->arm[0] = inside ? (ra > rb ? o->distance : 0) : 0.5 * (o->distance + difference * (ra + rb) / o->distance);
+  o->arm[1] = o->distance - o->arm[0];
 }
 
-struct lens disc_overlap_half_plane(const struct shape *disc, double distance)
+struct body_overlap disc_overlap(const struct shape *disc, const struct shape *other, double dx, double dy)
 {
-  return lens_of_wall(disc->radius, distance);
+  struct body_overlap o = {.distance = sqrt(dx * dx + dy * dy), .nx = 1};
+  o.lens = lens_of_discs(disc->radius, other->radius, o.distance);
+  if (o.distance > 0) {
+    o.nx = dx / o.distance;
+    o.ny = dy / o.distance;
+  }
+  find_arms(disc->radius, other->radius, &o);
+  return o;
+}
+
+struct body_overlap disc_overlap_half_plane(const struct shape *disc, double distance, double nx, double ny)
+{
+  return (struct body_overlap){
+      .lens = lens_of_wall(disc->radius, distance), .distance = distance, .nx = nx, .ny = ny, .arm = {distance, 0}};
 }

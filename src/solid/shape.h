@@ -49,6 +49,15 @@ struct lens {
   double area, chord;
 };
 
+/* An overlap as a contact: the unit normal n from this body to the other body or the side, and the contact point, which lies on the line
+ * through the centroid along n, at the distance arm[0] from the centroid of this body and arm[1] from the other's (0 for a side). */
+struct body_overlap {
+  struct lens lens;
+  double distance; /* from centroid to centroid, or to the edge of the half plane */
+  double nx, ny;
+  double arm[2];
+};
+
 struct shape_kind {
   const char *name;
   bool round; /* unchanged by rotation: a change of the angle alone leaves all cells as they are */
@@ -57,10 +66,10 @@ struct shape_kind {
   struct shape_box (*box)(const struct shape *shape, const struct pose *pose);
   shape_extents *extents;
   shape_fractions *fractions;
-  /* With another body of the same kind whose centroid is (dx, dy) away. */
-  struct lens (*overlap)(const struct shape *shape, const struct shape *other, double dx, double dy);
-  /* With a half plane whose edge is `distance` from the centroid; negative where the centroid lies in it. */
-  struct lens (*overlap_half_plane)(const struct shape *shape, double distance);
+  /* With another body of the same kind whose centroid is (dx, dy) away; coincident centroids are separated along x. */
+  struct body_overlap (*overlap)(const struct shape *shape, const struct shape *other, double dx, double dy);
+  /* With the half plane of outward normal (nx, ny) whose edge is `distance` from the centroid; negative if the centroid is inside. */
+  struct body_overlap (*overlap_half_plane)(const struct shape *shape, double distance, double nx, double ny);
 };
 
 #endif
