@@ -6,7 +6,7 @@
 #include "base/clock.h"
 #include "bench.h"
 #include "scenes.h"
-#include "solid/disc_area.h"
+#include "disc_area.h"
 #include "solid/solid_kernel.h"
 
 #include <gsl/gsl_randist.h>

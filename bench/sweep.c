@@ -8,7 +8,7 @@
 #include "base/clock.h"
 #include "bench.h"
 #include "fluid/boundary.h"
-#include "fluid/reference.h"
+#include "reference.h"
 #include "sim/blocked.h"
 
 #include <math.h>

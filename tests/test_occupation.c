@@ -2,7 +2,7 @@
 #include "contact/cells_area.h"
 #include "contact/pairs.h"
 #include "scenes.h"
-#include "solid/disc_area.h"
+#include "disc_area.h"
 #include "solid/occupation.h"
 
 #include <criterion/criterion.h>

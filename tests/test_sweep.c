@@ -1,6 +1,6 @@
 /* The fluid: lattice identities, and every kernel against the reference on random states and all boundaries. */
 #include "fluid/boundary.h"
-#include "fluid/reference.h"
+#include "reference.h"
 #include "lattice/moments.h"
 
 #include <criterion/criterion.h>

@@ -9,7 +9,7 @@
  *   2. bands     of each band, which discs lie in it, along x; and whether one of them has come, gone or moved. If none
  *                has, the band stays as it is.
  *   3. rows      per band, in parallel: the runs of its rows, sorted by first cell. eps come from line tables
- *                (disc_area.h, area.h), of wide discs for the rim only: where it ends follows from the chords of the row's two lines,
+ *                (disc_kernel.c), of wide discs for the rim only: where it ends follows from the chords of the row's two lines,
  *                so that no list of boundary cells need be kept from step to step, as the modified Verlet list does.
  *                Runs that overlap share cells; there B follows from the total eps = min(1, sum eps_p), of which owner
  *                p has the share w_p B with w_p = eps_p/sum eps (22), for any number of owners.

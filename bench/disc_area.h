@@ -5,8 +5,8 @@
  *   area(a, b) = pi R^2/4 - D(a) - D(b) + a b,   D(t) = (R^2 asin(t/R) + t sqrt(R^2 - t^2))/2,
  * and outside the disc area(a, b) depends on the quadrant of the corner. So a disc costs one arcsine per grid line;
  * each corner serves four cells. D is continued beyond the disc by its values at +-R. */
-#ifndef DELBM_SOLID_DISC_AREA_H
-#define DELBM_SOLID_DISC_AREA_H
+#ifndef DELBM_BENCH_DISC_AREA_H
+#define DELBM_BENCH_DISC_AREA_H
 
 #include <math.h>
 

@@ -1,4 +1,4 @@
-#include "solid/disc_area.h"
+#include "disc_area.h"
 
 double disc_cell_area(double radius, double x, double y)
 {

@@ -1,4 +1,4 @@
-#include "fluid/reference.h"
+#include "reference.h"
 
 #include "base/memory.h"
 #include "fluid/boundary.h"

@@ -1,7 +1,7 @@
 /* The step as the paper states it, cell by cell: two arrays of full populations, the moment matrix, a search for the
  * source cell of every population. Slow; the reference of every fast kernel in tests and benchmarks. */
-#ifndef DELBM_FLUID_REFERENCE_H
-#define DELBM_FLUID_REFERENCE_H
+#ifndef DELBM_BENCH_REFERENCE_H
+#define DELBM_BENCH_REFERENCE_H
 
 #include "fluid/sweep.h"
 
