@@ -1,6 +1,6 @@
 #include "base/c_locale.h"
 
-/* The C locale is a constant of the C library: naming it allocates nothing and cannot fail. */
+/* newlocale cannot fail here: "C" is a constant of the C library. */
 locale_t c_locale_enter(void)
 {
   return uselocale(newlocale(LC_ALL_MASK, "C", (locale_t)0));

@@ -1,5 +1,5 @@
-/* Eight doubles at a time: GCC's and clang's portable vectors, for loops over runs so short that their ends would cost
- * more than their middle. The compiler makes of them what the instruction set has. Included by kernels only. */
+/* Vectors of eight doubles (portable vector extension of GCC and clang), for loops over runs of about ten cells, whose
+ * scalar remainder would take longer than the vector part. Included by kernels only. */
 #ifndef DELBM_BASE_LANES_H
 #define DELBM_BASE_LANES_H
 
@@ -7,7 +7,7 @@ enum { LANES = 8 };
 
 typedef double lanes __attribute__((vector_size(64)));
 
-/* Elements in memory, at any address. */
+/* Vectors in memory, aligned as their elements. */
 typedef double lanes_in_doubles __attribute__((vector_size(64), aligned(8), may_alias));
 typedef float lanes_in_floats __attribute__((vector_size(32), aligned(4), may_alias));
 
@@ -18,15 +18,15 @@ static inline __attribute__((always_inline)) lanes lanes_load(const double *from
   return *(const lanes_in_doubles *)from;
 }
 
-/* One in the first n lanes (n > 0; all if there are more), zero in the others. */
+/* 1 in the first min(n, 8) lanes (n > 0), 0 in the others. */
 static inline __attribute__((always_inline)) lanes lanes_first(int n)
 {
   static const double ones_and_zeros[2 * LANES] = {1, 1, 1, 1, 1, 1, 1, 1};
   return lanes_load(ones_and_zeros + (n < LANES ? LANES - n : 0));
 }
 
-/* The sums of the lanes of eight vectors, each ((0 + 4) + (2 + 6)) + ((1 + 5) + (3 + 7)): halves, quarters and single
- * lanes are added of all vectors together, in a seventh of the operations that eight sums one by one would take. */
+/* Lane k of the result is the sum of the lanes of v[k], in the order ((0 + 4) + (2 + 6)) + ((1 + 5) + (3 + 7)). The
+ * eight sums share each addition: 7 vector additions in place of 56 scalar ones. */
 static inline __attribute__((always_inline)) lanes lanes_sums(const lanes v[8])
 {
   lanes half[4], quarter[2];

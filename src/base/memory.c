@@ -27,7 +27,7 @@ double memory_resident(void)
 
 static const double gib = 1 << 30;
 
-/* Bytes handed out. The one number of the process that the functions below share; threads may allocate at the same time. */
+/* The only variable shared by the functions below; atomic, since threads allocate concurrently. */
 static _Atomic size_t handed_out;
 
 double memory_handed_out(void)
@@ -42,7 +42,7 @@ static bool out_of_memory(const char *what, double bytes, struct status *status)
   return false;
 }
 
-/* Fails, as an invalid case, for what the machine does not have. */
+/* Fails as an invalid case: the machine is too small. */
 static bool is_within_budget(const char *what, double bytes, struct status *status)
 {
   const double resident = bytes < (double)huge_page ? 0 : memory_resident(), physical = memory_physical();
@@ -102,7 +102,7 @@ void *memory_map(size_t bytes, const char *what, struct status *status)
   size_t skip = round_up((uintptr_t)pointer, huge_page) - (uintptr_t)pointer;
   if (skip) munmap(pointer, skip);
   if (skip < huge_page) munmap(pointer + skip + length, huge_page - skip);
-  madvise(pointer + skip, length, MADV_HUGEPAGE); /* only advice: small pages give the same results */
+  madvise(pointer + skip, length, MADV_HUGEPAGE); /* may fail: results are the same with small pages */
   handed_out += length;
   return pointer + skip;
 }

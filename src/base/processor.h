@@ -1,4 +1,4 @@
-/* Which of the instruction sets that kernels are compiled for this processor has. */
+/* Instruction sets of this processor, among the targets of the kernels. */
 #ifndef DELBM_BASE_PROCESSOR_H
 #define DELBM_BASE_PROCESSOR_H
 

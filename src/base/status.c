@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* In the C locale also where a thread of OpenMP has failed. */
+/* Threads of OpenMP are in the locale of the process. */
 static void print(char *text, size_t size, const char *format, va_list arguments)
 {
   const locale_t before = c_locale_enter();

@@ -1,5 +1,5 @@
-/* State on its way to a file or back. Each part of a simulation names what belongs to its state in one function for both
- * directions, so that what is restored cannot differ from what was saved. */
+/* Saving and restoring of state. Each part of a simulation lists its state in one function for both directions, so
+ * that both agree. */
 #ifndef DELBM_BASE_STORE_H
 #define DELBM_BASE_STORE_H
 
@@ -16,10 +16,10 @@ struct store {
   uint32_t sum;     /* CRC-32 of all bytes so far */
 };
 
-/* Saves or restores `size` bytes. Fails with DELBM_IO when they cannot be written, or are not there. */
+/* Saves or restores `size` bytes. Fails with DELBM_IO on a write error, or at a premature end of the file. */
 bool store_bytes(struct store *store, void *data, size_t size, struct status *status);
 
-/* The name of what follows; fails when restoring does not find it here. */
+/* Saves a name for the part that follows, or fails if it differs when restored. */
 bool store_mark(struct store *store, const char *name, struct status *status);
 
 #endif

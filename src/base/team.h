@@ -1,24 +1,24 @@
-/* What the threads of a parallel region agree on: whether one of them has failed, and of what.
+/* Agreement of the threads of a parallel region on failure.
  *
- * A thread records its failure at any time and goes on. Whether all leave is decided inside the `single` construct that ends
- * a stage, and read behind the barrier of that construct: all threads read the same value and leave together, so that none
- * waits at a barrier that another never reaches. The decision is kept in a flag that belongs to the stage and is written
- * once a step: a flag shared by several stages could be written again, by a thread that is ahead, before the slowest
- * thread has read it. A stage returns false to all threads where they are to leave. */
+ * A thread records its failure at any time and continues to the end of the stage. There, one thread inside a `single`
+ * construct copies `failed` to a flag that belongs to this place of the stage; all threads read the flag after the
+ * barrier of the construct. They thus read the same value and leave together, so that no thread waits at a barrier that
+ * another one never reaches. One flag per place: a flag that several stages wrote could be overwritten by a fast thread
+ * before the slowest one has read it. A stage returns false to all threads if they are to leave. */
 #ifndef DELBM_BASE_TEAM_H
 #define DELBM_BASE_TEAM_H
 
 #include "base/status.h"
 
 struct team {
-  bool failed;         /* one thread has failed */
+  bool failed;         /* at least one thread has failed */
   struct status first; /* the first failure */
 };
 
-/* Records a failure; the first one stays. */
+/* Records a failure; later failures than the first are ignored. */
 void team_fail(struct team *team, const struct status *status);
 
-/* Decides whether all threads leave at a point of a stage, whose flag is *leave. Inside of a `single`. */
+/* Sets the flag of a place in a stage: true if all threads are to leave there. To be called inside a `single`. */
 static inline void team_decide(const struct team *team, bool *leave)
 {
   *leave = team->failed;

@@ -11,7 +11,8 @@ static size_t smallest(size_t a, size_t b, size_t c)
 size_t edit_distance(const char *a, const char *b)
 {
   const size_t length = strnlen(b, WORD_LENGTH);
-  size_t rows[3][WORD_LENGTH + 1]; /* of a's first i, i - 1 and i - 2 letters: distances to each beginning of b */
+  size_t rows[3]
+             [WORD_LENGTH + 1]; /* distances of the first i - 2, i - 1 and i letters of a to the first j letters of b */
   size_t *before = rows[0], *last = rows[1], *row = rows[2];
   for (size_t j = 0; j <= length; j++) last[j] = j;
   for (size_t i = 1; i <= WORD_LENGTH && a[i - 1]; i++) {

@@ -1,4 +1,4 @@
-/* How alike two words are, to offer what may have been meant by a misspelt one. */
+/* Similarity of words, for suggestions to misspelt ones. */
 #ifndef DELBM_BASE_WORDS_H
 #define DELBM_BASE_WORDS_H
 
@@ -7,11 +7,11 @@
 
 enum { WORD_LENGTH = 96 };
 
-/* Letters to insert, delete or replace, or neighbours to swap, to turn one word into the other (optimal string
- * alignment, a Levenshtein distance with swaps). Only the first WORD_LENGTH letters of each count. */
+/* Optimal string alignment distance: number of insertions, deletions, replacements and swaps of neighbours. Uses the
+ * first WORD_LENGTH letters of each word. */
 size_t edit_distance(const char *a, const char *b);
 
-/* True if another word at this distance may be meant by the one given: at most every third letter differs. */
+/* True if a word at this distance may be intended: at most every third letter of `given` differs. */
 bool words_are_near(const char *given, size_t distance);
 
 #endif

@@ -1,3 +1,24 @@
+/* The step. All threads of one parallel region run the four stages one after another; a stage divides its own work and
+ * ends at a barrier.
+ *
+ *   1. stage_exchange    per disc: change of velocity without contacts, and response K to an impulse, from the sums of
+ *                        the previous sweep.
+ *   2. stage_contact     impulses of contacts through K, hence at the inertia of disc and fluid together.
+ *      stage_motion      new velocities and positions. Timed as exchange.
+ *   3. stage_occupation  occupation at the new positions; left out where no disc moves.
+ *   4. stage_sweep       collision and streaming of the fluid with the discs of the present occupation, and in the same
+ *                        pass through memory the sums of the next exchange, over the next occupation.
+ *
+ * Stage 4 imposes the present occupation on the fluid and sums over the cells of the next one. Hence there are two,
+ * whose roles count_step exchanges. Before the first step, and after every change by a caller, paint and
+ * take_first_sums compute the occupation and sums that a sweep would have left.
+ *
+ * Blocking in time (blocked.h). Without discs, blocks of several steps run in one pass through memory. With discs, a
+ * block advances first the rows that no disc can reach within its steps, then the near rows step by step. A failure
+ * within such a block leaves rows at different steps: block_incomplete then excludes sums over all rows.
+ *
+ * State. The state of a checkpoint is the fluid, the discs, and what exchange and contacts store between steps;
+ * occupation and sums are derived from the state (derive_state). Failure in a thread: team.h. */
 #include "sim/simulation.h"
 
 #include "base/clock.h"
@@ -17,8 +38,8 @@ struct simulation {
   struct stages stages;
   struct flow flow;
   struct discs discs;
-  struct occupation occupations[2]; /* at the start of the present step, and of the next; one where no disc moves */
-  int present;
+  struct occupation occupations[2]; /* at the present step and at the next; [0] alone where no disc moves */
+  int present;                      /* index in occupations[] */
   struct exchange exchange;
   struct contacts contacts;
   struct team team;
@@ -28,12 +49,11 @@ struct simulation {
   int threads; /* of the parallel region */
   double initial_momentum[2];
   double max_mach;
-  bool discs_left_rows; /* of a block: all threads leave the step (team.h) */
-  bool
-      block_incomplete; /* a block was left unfinished: rows are at different steps, and no sum over them means anything */
+  bool discs_left_rows;  /* flag of team.h: a disc has left the near rows of a block */
+  bool block_incomplete; /* rows are at different steps after a failure within a block */
 };
 
-/* Momentum that the coupling conserves, of all fluid and discs. */
+/* Momentum of fluid and discs that the coupling conserves (exchange.h). */
 static void conserved_momentum(struct simulation *s, double momentum[2])
 {
   const struct fluid_totals fluid = diagnostics_totals(&s->flow.populations);
@@ -59,8 +79,8 @@ static bool create_discs(struct simulation *s, struct status *status)
          contacts_create(&s->contacts, s->scene, needs, &s->discs, status);
 }
 
-/* Occupation where the discs are. A stage is shared out among the threads of the region around it, which must be of our
- * own: the caller may be inside one, and only one of its threads may call. */
+/* Occupation at the present positions. In a parallel region of its own: a stage divides its work among the threads of
+ * the innermost region, and the caller may be one thread of another region. */
 static bool paint(struct simulation *s, struct status *status)
 {
   if (s->stages.exchange) {
@@ -70,7 +90,7 @@ static bool paint(struct simulation *s, struct status *status)
   return simulation_usable(s, status);
 }
 
-/* The sums of the first exchange, in a region of our own like the above. */
+/* Sums of the coming exchange, in a parallel region of its own as in paint. */
 static void take_first_sums(struct simulation *s)
 {
   if (!s->stages.exchange) return;
@@ -78,7 +98,7 @@ static void take_first_sums(struct simulation *s)
   stage_first_sums(&s->flow, present(s));
 }
 
-/* The discs as they are now, for what is written over the fluid. */
+/* The discs at their present velocities, for functions that replace the populations. */
 static struct sweep_discs discs_between_steps(struct simulation *s)
 {
   const struct discs *d = &s->discs;
@@ -96,7 +116,8 @@ void simulation_start(struct simulation *s, flow_initial *initial, const void *c
   conserved_momentum(s, s->initial_momentum);
 }
 
-/* The populations last: nothing is written to them yet, and all else is in the budget by then. */
+/* Populations are created last: they are mapped but not written, and the budget (memory.h) counts only resident
+ * memory. */
 static struct simulation *create(const struct scene *scene, struct status *status)
 {
   struct simulation *s = memory_allocate(1, sizeof *s, "the simulation", status);
@@ -130,7 +151,7 @@ void simulation_destroy(struct simulation *s)
   free(s);
 }
 
-/* Adds the time since *since to a stage. All threads are behind the same barrier; one of them keeps the clock. */
+/* Adds the time since *since to a stage, by the master thread; all threads have passed the same barrier. */
 static void add_time(struct simulation *s, enum stage stage, double *since)
 {
 #pragma omp master
@@ -141,7 +162,7 @@ static void add_time(struct simulation *s, enum stage stage, double *since)
   }
 }
 
-/* Whether all discs are where the coming sweep of these rows sees them; nothing to ask if these are all. */
+/* False, by agreement of all threads, if a disc is outside of `rows`, to which a block confines the coming sweep. */
 static bool discs_stay_within(struct simulation *s, const struct occupation *next, const struct rows *rows)
 {
   if (rows->end - rows->first == s->scene->domain.size[1]) return true;
@@ -158,9 +179,7 @@ static bool discs_stay_within(struct simulation *s, const struct occupation *nex
   return !s->discs_left_rows;
 }
 
-/* Stages 1 to 3 of a step, by all threads of the parallel region; false where they are to leave it unfinished. The exchange
- * precedes the contacts so that these, and their sub-steps, act through the same response as the fluid does; and discs are
- * painted where they have just moved before the sweep, so that the sweep can take the sums of the next exchange. */
+/* Stages 1 to 3 of a step, by all threads of the parallel region. False in all threads after a failure in one. */
 static bool step_discs(struct simulation *s, struct occupation *next, double *since)
 {
   struct occupation *now = present(s);
@@ -175,13 +194,13 @@ static bool step_discs(struct simulation *s, struct occupation *next, double *si
   return true;
 }
 
-/* Occupation of the coming step: where no disc moves, that of this one. */
+/* Occupation at the next step: the present one where no disc moves. */
 static struct occupation *next_occupation(struct simulation *s)
 {
   return s->stages.occupation == OCCUPATION_EVERY_STEP ? &s->occupations[!s->present] : present(s);
 }
 
-/* One step of these rows, as step_discs. */
+/* One step of the rows; false as in step_discs. */
 static bool step(struct simulation *s, const struct rows *rows, double *since)
 {
   struct sweep_discs discs = {0};
@@ -211,12 +230,13 @@ bool simulation_measure(const struct scene *scene, struct simulation_memory *mem
   }
   const double populations = (double)s->flow.populations.bytes;
   *memory = (struct simulation_memory){populations, memory_handed_out() - before - populations};
-  const bool good = simulation_usable(s, status) || !status->out_of_memory; /* whatever else becomes of the run */
+  const bool good =
+      simulation_usable(s, status) || !status->out_of_memory; /* divergence leaves the measurement valid */
   simulation_destroy(s);
   return good;
 }
 
-/* Steps of a scene that is blocked in time: blocks of equal length, none deeper than the tuning says, and none across the
+/* Steps of a scene without discs, in blocks of equal length, up to the depth that tuning.h has chosen and not across the
  * end of an interval of zero_flux. */
 static void run_blocks(struct simulation *s, int64_t steps)
 {
@@ -237,7 +257,6 @@ static void run_blocks(struct simulation *s, int64_t steps)
   }
 }
 
-/* What follows a step of all or, in a block, of the near rows. */
 static void count_step(struct simulation *s)
 {
 #pragma omp single
@@ -247,7 +266,7 @@ static void count_step(struct simulation *s)
   }
 }
 
-/* Steps of all rows, in one parallel region. */
+/* Steps without blocking, in one parallel region. */
 static void run_single_steps(struct simulation *s, int64_t steps)
 {
   const struct rows all = {0, s->scene->domain.size[1]};
@@ -258,7 +277,7 @@ static void run_single_steps(struct simulation *s, int64_t steps)
   }
 }
 
-/* A block in which the rows that no disc can reach go ahead. */
+/* A block with discs: first all steps of the rows out of reach of discs, then the near rows step by step. */
 static void run_near_block(struct simulation *s, const struct near_rows *near, int steps)
 {
 #pragma omp parallel num_threads(s->threads)
@@ -275,7 +294,7 @@ static void run_near_block(struct simulation *s, const struct near_rows *near, i
   s->block_incomplete = s->team.failed;
 }
 
-/* Steps of a scene with discs that can be blocked in time, as long as enough rows are out of their reach. */
+/* Steps of a scene with discs, in blocks where enough rows are out of their reach, else without blocking. */
 static void run_near_blocks(struct simulation *s, int64_t steps)
 {
   const int64_t end = s->step + steps;
@@ -301,7 +320,7 @@ static void run_steps(struct simulation *s, int64_t steps)
     run_blocks(s, steps);
 }
 
-/* By which part a box that an inlet fills holds more fluid than at rest. */
+/* Relative excess of the mean density in a box with an inlet, else 0. */
 static double congestion(struct simulation *s)
 {
   const struct side *side = s->scene->domain.side;
@@ -310,7 +329,7 @@ static double congestion(struct simulation *s)
   return inlet ? diagnostics_totals(&s->flow.populations).excess_mass / (double)scene_cells(s->scene) : 0;
 }
 
-/* Adds the cause of a divergence at cell (x, y), -1 if not known, to its message, and the speeds that the fluid has by now to the largest Mach number. */
+/* Adds the probable cause of a divergence at cell (x, y) (-1: not known) to its message, and updates max_mach. */
 static void explain(struct simulation *s, int x, int y, struct status *status)
 {
   struct divergence divergence = {
@@ -351,7 +370,6 @@ bool simulation_check(struct simulation *s, struct status *status)
   return false;
 }
 
-/* Steps up to the next look for divergence. False where one of them failed. */
 static bool advance_to_check(struct simulation *s, int64_t steps, struct status *status)
 {
   run_steps(s, steps);
@@ -378,7 +396,7 @@ bool simulation_advance(struct simulation *s, int64_t steps, struct status *stat
   return true;
 }
 
-/* The state apart from what follows from it: occupation, and the sums of the coming exchange. */
+/* The state without its derived parts (derive_state). */
 static bool store_state(struct simulation *s, struct store *store, struct status *status)
 {
   return store_mark(store, "simulation", status) && store_bytes(store, &s->step, sizeof s->step, status) &&
@@ -387,18 +405,18 @@ static bool store_state(struct simulation *s, struct store *store, struct status
          (!s->stages.exchange ||
           (discs_store(&s->discs, store, status) && exchange_store(&s->exchange, s->discs.count, store, status) &&
            contacts_store(&s->contacts, s->discs.count, store, status))) &&
-         store_bytes(store, &s->times, sizeof s->times, status); /* last: they differ from run to run */
+         store_bytes(store, &s->times, sizeof s->times, status); /* last, since times differ between runs */
 }
 
 bool simulation_save(struct simulation *s, struct store *store, struct status *status)
 {
   const double max_mach = s->max_mach;
   if (!simulation_check(s, status)) return false;
-  s->max_mach = max_mach; /* saving is no check: it changes no figure of the run */
+  s->max_mach = max_mach; /* so that the figures of a run do not depend on its checkpoints */
   return store_state(s, store, status);
 }
 
-/* Whether discs are where a run can have brought them: elsewhere they would be painted out of all tables. */
+/* Refuses positions that no run can reach: painting them would exceed the tables. */
 static bool check_places(const struct simulation *s, const struct store *store, struct status *status)
 {
   const double far = 1e9;
@@ -414,7 +432,7 @@ static bool check_places(const struct simulation *s, const struct store *store, 
   return true;
 }
 
-/* What follows from the state. */
+/* The derived state: occupation, and sums of the coming exchange. */
 static bool derive_state(struct simulation *s, struct status *status)
 {
   if (!paint(s, status)) return false;
@@ -429,7 +447,7 @@ bool simulation_changed(struct simulation *s, struct status *status)
   return true;
 }
 
-/* Tables never shrink, so that there is room for what they had in them. */
+/* Tables never shrink, so that the former positions fit. */
 bool simulation_unchanged(struct simulation *s)
 {
   struct status ignored;
@@ -489,7 +507,7 @@ bool simulation_sample(struct simulation *s, const struct sample_grid *grid, con
   return sample_take(&s->flow.populations, periodic, &force, simulation_occupation(s), &s->discs, grid, sample, status);
 }
 
-/* Change of the conserved momentum that body forces do not explain; NAN where something else exchanges momentum. */
+/* As in struct simulation_report. */
 static double momentum_drift(struct simulation *s)
 {
   if (s->block_incomplete) return NAN;
@@ -521,7 +539,7 @@ void simulation_report(struct simulation *s, struct simulation_report *report)
                                        .momentum_drift = momentum_drift(s),
                                        .max_mach = s->max_mach,
                                        .max_substeps = s->stages.exchange ? s->contacts.max_substeps : 1};
-  for (int axis = 0; axis < 2; axis++) /* with half of the force of the coming step, as in the fields */
+  for (int axis = 0; axis < 2; axis++) /* with half the force of the coming step, as in simulation_fields */
     report->mean_velocity[axis] =
         (momentum[axis] + (mass * force.per_mass[axis] + cells * force.uniform[axis]) / 2) / mass;
   tuning_text(&s->tuning, report->blocking);

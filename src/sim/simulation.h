@@ -1,6 +1,7 @@
-/* The simulation: a scene set in motion. One step is four stages, each one function (exchange, which the motion of the
- * discs ends behind the contacts; contact; occupation; sweep), run by all threads of one parallel region that spans many
- * steps. */
+/* A simulation of a scene. Between two calls all rows and all discs are at the same step, and the state is complete:
+ * fluid, discs, their occupation, and the sums of the coming exchange. Functions with a status fail as their comments
+ * say; after a failed simulation_advance the simulation can be reported and destroyed, no more (simulation_usable).
+ * Calls are for one thread at a time; threads are started inside. Order of the step: simulation.c. */
 #ifndef DELBM_SIM_SIMULATION_H
 #define DELBM_SIM_SIMULATION_H
 
@@ -15,55 +16,56 @@
 struct occupation;
 struct simulation;
 
-/* Sets up fluid at rest (density 1) and the scene's discs. The scene must outlive the simulation. */
+/* Creates fluid at rest (density 1) and the discs of the scene. The scene must outlive the simulation. */
 bool simulation_create(struct simulation **simulation, const struct scene *scene, struct status *status);
 void simulation_destroy(struct simulation *simulation);
 
-/* Memory of a simulation of the scene, bytes. Measured: all tables are created, and the discs take one step, through fluid at
- * rest to which nothing is written, so that its pages are only promised. Costs one step without its sweep. */
+/* Memory of a simulation of the scene, bytes. Measured: all tables are created, and the discs take one step in fluid at
+ * rest whose pages are mapped but not written, hence not resident. Costs one step without its sweep. */
 struct simulation_memory {
   double populations;
-  double tables; /* all other arrays; lists that grow while they are copied count twice, as at the peak */
+  double tables; /* all other arrays; growing lists count twice, as old and new copies exist at the peak */
 };
 bool simulation_measure(const struct scene *scene, struct simulation_memory *memory, struct status *status);
 
-/* Before the first step: starts from another state of the fluid than rest. */
+/* Replaces the initial state of the fluid. To be called before the first step. */
 void simulation_start(struct simulation *simulation, flow_initial *initial, const void *context);
 
 /* Advances by `steps` steps. Fails (DELBM_FAILED) when the run has diverged: a value that is not finite, or a Mach
- * number above 0.6, found at the latest run.check steps after it arose; the message says which, where and when. */
+ * number above 0.6, detected within run.check steps; the message names the value, the cell or disc, and the step. */
 bool simulation_advance(struct simulation *simulation, int64_t steps, struct status *status);
 
-/* False, with the reason of its failure, for a simulation that has failed. */
+/* False after a failure, with its reason in *status. */
 bool simulation_usable(const struct simulation *simulation, struct status *status);
 
-/* Looks for divergence now. To be called before anything is written, so that no file holds a NaN. */
+/* Checks for divergence now. To be called before output, so that no file contains a NaN. */
 bool simulation_check(struct simulation *simulation, struct status *status);
 
-/* Saves the state, or restores it into a simulation of the same scene: all that makes the coming steps the same bits as
- * those of a run that was never stopped, on any number of threads. What has diverged is not saved (DELBM_FAILED). After
- * a failed restoring the simulation can only be destroyed. */
+/* Saves the state, or restores it into a simulation of the same scene. Steps after a restoration are bit-identical to
+ * steps of an unbroken run, on any number of threads. Saving checks for divergence first and then fails with
+ * DELBM_FAILED. After a failed restoration the simulation can only be destroyed. */
 bool simulation_save(struct simulation *simulation, struct store *store, struct status *status);
 bool simulation_restore(struct simulation *simulation, struct store *store, struct status *status);
 
-/* Name of the kernel that the processor and the scene allow: others may differ in the last bit. */
+/* Name of the sweep kernel, chosen by the processor and the scene; results of two kernels may differ in the last bit. */
 const char *simulation_kernel(const struct simulation *simulation);
 
 int64_t simulation_step(const struct simulation *simulation);
 const struct scene *simulation_scene(const struct simulation *simulation);
 const struct discs *simulation_discs(const struct simulation *simulation);
 
-/* Changes from outside: what stands in the arrays of the discs, and the fluid of all cells, brought to equilibrium at this
- * density and velocity, arrays as those of simulation_fields. To be called between steps; after all of them, and before
- * the next step, simulation_changed follows up. It fails for want of memory, or if the simulation had failed before. */
+/* Changes by the caller between steps: to the arrays of the discs directly, and to the fluid by simulation_set_fluid,
+ * which sets all cells to the equilibrium of a density and velocity (arrays as in simulation_fields). After the last
+ * change and before the next step, simulation_changed updates all derived state. It fails if memory runs out, or if
+ * the simulation has failed before. */
 void simulation_set_fluid(struct simulation *simulation, const double *density, const double *ux, const double *uy);
 bool simulation_changed(struct simulation *simulation, struct status *status);
 
-/* Undoes a simulation_changed that lacked memory, once the arrays of the discs are as they were. False if that lacks memory,
- * too: then the simulation can only be destroyed. */
+/* Reverts a simulation_changed that ran out of memory, after the caller has reset the arrays of the discs. False if
+ * memory runs out again: the simulation can then only be destroyed. */
 bool simulation_unchanged(struct simulation *simulation);
 
-/* Who covers what now; NULL in a scene without discs. */
+/* Occupation at the present step; NULL in a scene without discs. */
 const struct occupation *simulation_occupation(const struct simulation *simulation);
 
 /* Density and velocity of every cell, row by row from the bottom: arrays of size[0] * size[1]. Any may be NULL. */
@@ -77,15 +79,16 @@ bool simulation_sample(struct simulation *simulation, const struct sample_grid *
 struct simulation_report {
   int threads;
   const char *kernel;
-  struct stage_times times; /* STAGE_OUTPUT is the caller's to fill */
+  struct stage_times times; /* STAGE_OUTPUT: 0, measured by the caller */
   double mass_drift;        /* |mass - initial mass| / initial mass */
-  double momentum_drift; /* largest of the two components of the change of the conserved momentum not explained by body
-                               forces, over the fluid's mass; NAN where walls, inlets or outlets exchange momentum */
+  double
+      momentum_drift; /* change of the conserved momentum less the impulse of body forces, over the mass of the fluid;
+                               larger component; NAN where sides, or discs that are not free, exchange momentum */
   double mean_velocity[2];    /* momentum of the fluid over its mass, cells inside discs included, cells/step */
-  double max_mach;            /* largest seen at the checks for divergence, and where it diverged */
+  double max_mach;            /* largest at the checks for divergence, and at a divergence */
   char blocking[32];          /* blocking of the sweep in time: off, its depth, or depth x width */
   char binding[THREADS_TEXT]; /* of threads to processors */
-  int max_substeps;           /* most sub-steps that a step has taken */
+  int max_substeps;           /* largest number of contact sub-steps of a step so far */
 };
 void simulation_report(struct simulation *simulation, struct simulation_report *report);
 

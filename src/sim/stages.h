@@ -1,14 +1,14 @@
-/* The stages of the step: their names and timers, and which of them a scene needs. What a scene does not need is neither run nor
+/* The stages of the step: names, timers, and the stages that a scene needs. Other stages are neither run nor
  * allocated. */
-#ifndef DELBM_SIM_PLAN_H
-#define DELBM_SIM_PLAN_H
+#ifndef DELBM_SIM_STAGES_H
+#define DELBM_SIM_STAGES_H
 
 #include "model/scene.h"
 
-/* STAGE_BOUNDARY takes no time of its own: the links to the sides are part of the sweep. run.json keeps its name. */
+/* STAGE_BOUNDARY: always 0 seconds, since links to sides are part of the sweep; run.json lists it. */
 enum stage { STAGE_OCCUPATION, STAGE_CONTACT, STAGE_EXCHANGE, STAGE_SWEEP, STAGE_BOUNDARY, STAGE_OUTPUT, STAGE_COUNT };
 
-/* Seconds of wall time spent in each stage since the simulation was created. */
+/* Wall time of each stage since the creation of the simulation, seconds. */
 struct stage_times {
   double seconds[STAGE_COUNT];
 };
@@ -21,10 +21,10 @@ enum occupation_need { OCCUPATION_NEVER, OCCUPATION_ONCE, OCCUPATION_EVERY_STEP 
 struct stages {
   enum occupation_need occupation;
   bool exchange; /* there are discs */
-  bool pairs;    /* two discs, one of them moving, can meet */
-  bool walls;    /* a free disc can meet a side */
-  bool substeps; /* contacts may be stiff enough to need several sub-steps */
-  bool force;    /* the kernel with a body force */
+  bool pairs;    /* contacts of discs are possible: two discs or more, one of them free */
+  bool walls;    /* contacts with sides are possible: a free disc and a side that is not periodic */
+  bool substeps; /* stiffness may require several contact sub-steps */
+  bool force;    /* fluid.force or zero_flux: the kernel with a body force */
 };
 
 struct stages stages_of(const struct scene *scene);

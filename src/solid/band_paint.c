@@ -6,17 +6,17 @@
 
 _Static_assert((int)BAND_ROWS <= (int)SHAPE_ROWS, "the rows of a band are computed in one call");
 
-enum { SLACK = SHAPE_PAD }; /* elements past a band's last share that kernels may touch */
+enum { SLACK = SHAPE_PAD }; /* elements past a band's last cell that kernels may access */
 
-/* Rows of one disc, or of one periodic image of it, in one band. */
+/* The rows of one disc, or of one of its images across the bottom or top, that lie in one band. */
 struct disc_rows {
   size_t disc;
-  int from, end; /* of its rows */
-  int to_band;   /* what to add to such a row for one of the band */
-  bool inside;   /* all of it between left and right */
+  int from, end; /* from .. end - 1, counted from the lowest row of the disc */
+  int to_band;   /* row of the band = row of the disc + to_band */
+  bool inside;   /* the disc crosses neither the left nor the right side */
 };
 
-/* False where the image (-1, 0, 1) has no row in the band. */
+/* False if the image (-1, 0, 1) has no row in the band. */
 static bool rows_in_band(const struct occupation *o, const struct discs *discs, int index, size_t disc, int image,
                          struct disc_rows *s)
 {
@@ -32,7 +32,8 @@ static bool rows_in_band(const struct occupation *o, const struct discs *discs, 
   return s->from < s->end;
 }
 
-/* Enters a run into its row, by its first cell, then by disc; nearly always last, as discs come along x. */
+/* Insertion sort by first cell, then by owner; discs come in the order of x, so that nearly every run becomes the
+ * last. */
 static inline void insert_run(struct band *band, struct band_draft *draft, int row, const struct run *run,
                               const struct run_draft *run_draft)
 {
@@ -48,8 +49,8 @@ static inline void insert_run(struct band *band, struct band_draft *draft, int r
   draft->runs[at] = *run_draft;
 }
 
-/* Cells first .. end - 1 of row k of the disc, whose fractions begin at `cell`, cut to the box, as piece number `number` of that row.
- * Returns false if none is inside. */
+/* Adds piece `number` of row k of the disc: cells first .. end - 1, displaced by `shift` and cut to the box. `cell`:
+ * index of the first cell in eps[]. False if no cell lies in the box. */
 static bool add_piece(const struct occupation *o, struct band *band, struct band_draft *draft,
                       const struct disc_rows *s, int k, int first, int end, int shift, int number, size_t cell)
 {
@@ -67,7 +68,7 @@ static bool add_piece(const struct occupation *o, struct band *band, struct band
   return true;
 }
 
-/* The runs of row k of the disc: in a periodic box up to two pieces. */
+/* Adds the runs of row k of the disc: up to two pieces in a periodic box. */
 static void add_row(const struct occupation *o, struct band *band, struct band_draft *draft, const struct disc_rows *s,
                     int k, int first, int end, size_t cell)
 {
@@ -80,7 +81,7 @@ static void add_row(const struct occupation *o, struct band *band, struct band_d
     count += add_piece(o, band, draft, s, k, first, end, shifts[n], count, cell);
 }
 
-/* The runs of a stretch, and the fractions of their cells, which begin at `cells`; sets where they end. */
+/* Adds the runs of the rows, and appends the occupation fractions of their cells to eps[]. *cells: length of eps[]. */
 static bool paint_rows(struct occupation *o, struct band *band, struct band_draft *draft, const struct discs *discs,
                        const struct disc_rows *s, size_t *cells, struct status *status)
 {
@@ -102,7 +103,7 @@ static bool paint_rows(struct occupation *o, struct band *band, struct band_draf
   return true;
 }
 
-/* Room for the runs of each row: as many as there may be. */
+/* Reserves memory for the maximum number of runs of each row. */
 static bool reserve_runs(struct occupation *o, int index, const struct discs *discs, struct band_draft *draft,
                          struct status *status)
 {
@@ -122,8 +123,8 @@ static bool reserve_runs(struct occupation *o, int index, const struct discs *di
          memory_grow(&band->sums, &band->sums_capacity, total, sizeof *band->sums, "a band's sums", status);
 }
 
-/* The shares of a run of row y, whose cells are taken to have one owner. What a kernel writes past the end of a run is
- * overwritten by the next. */
+/* Owner weights of a run of row y, as if each cell had one owner. The kernel writes past the end of the run; the next
+ * run overwrites these elements. */
 static void weigh_run(const struct occupation *o, const struct run *run, int y, const double *eps, double *owner_weight)
 {
   const double damping = o->damping[run->owner];

@@ -2,10 +2,10 @@
 
 #include <math.h>
 
-/* Two runs of a row that overlap; runs before `open` end before them. */
+/* Runs `first` and `second` of a row overlap; runs before `open` end before run `first` begins. */
 struct overlap {
   const struct run *row;
-  const struct run_draft *draft; /* of the row's runs */
+  const struct run_draft *draft; /* [run of the row] */
   const double *eps;
   size_t count, open, first, second;
 };
@@ -15,13 +15,13 @@ static bool covers(const struct run *run, int x)
   return x >= run->x && x < run->x + run->n;
 }
 
-/* eps of cell x, which the row's run r covers. */
+/* eps of cell x in run r of the row. */
 static double fraction(const struct overlap *e, size_t r, int x)
 {
   return e->eps[e->draft[r].cell + (size_t)(x - e->row[r].x)];
 }
 
-/* Shares a cell among its owners, if it has more than one: the first of the overlap, and some of those after it. */
+/* Sets the owner weights of a cell with more than one owner. All its runs begin with run `first` or after it. */
 static void share_cell(struct occupation *o, struct band *band, const struct overlap *e, int x)
 {
   double total = 0, damping = 0;
@@ -41,7 +41,7 @@ static void share_cell(struct occupation *o, struct band *band, const struct ove
   band->shared_owners += owners;
 }
 
-/* True if a run before the second, other than the first, covers the cell: it is then shared on their account. */
+/* True if a run before `second`, other than `first`, contains the cell: an earlier overlap has set its owner weights. */
 static bool shared_earlier(const struct overlap *e, int x)
 {
   for (size_t r = e->open; r < e->second; r++)
@@ -54,7 +54,7 @@ static int end_of(const struct run *run)
   return run->x + run->n;
 }
 
-/* The cells that both runs of an overlap cover. */
+/* Sets the owner weights of the cells in both runs. */
 static void share_overlap(struct occupation *o, struct band *band, const struct overlap *e)
 {
   const struct run *l = &e->row[e->first], *r = &e->row[e->second];

@@ -1,4 +1,4 @@
-/* The members of struct shape_kind (shape.h) for a disc, but for its cells (disc_kernel.c). */
+/* Members of struct shape_kind (shape.h) of a disc, except extents and fractions (disc_kernel.c). */
 #ifndef DELBM_SOLID_DISC_H
 #define DELBM_SOLID_DISC_H
 

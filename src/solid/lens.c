@@ -2,9 +2,8 @@
 
 #include <math.h>
 
-/* asin(s) - s sqrt(1 - s^2), the area of the segment of a unit disc that a chord of half-length s <= 1/4 cuts off: s^3
- * times a polynomial in z = s^2, interpolated at Chebyshev points from the series 2/3 + z/5 + 3 z^2/28 + ...; relative
- * error 4e-18. */
+/* Area asin(s) - s sqrt(1 - s^2) of the segment of a unit disc with half chord s <= 1/4: s^3 times a polynomial in
+ * z = s^2, interpolated at Chebyshev points from the series 2/3 + z/5 + 3 z^2/28 + ...; relative error 4e-18. */
 static inline double small_segment(double s)
 {
   const double z = s * s;

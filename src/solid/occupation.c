@@ -1,3 +1,24 @@
+/* A shape is convex, so that a disc has one run of cells in each row, or two where a periodic side divides it. Memory
+ * is proportional to the number of owned cells, not to the box: the rows are divided into bands of BAND_ROWS, and a
+ * band stores the runs of its rows, row by row and by first cell, and the owner weights of their cells in the same
+ * order. The sweep thus reads both arrays once, front to back. Occupation fractions eps are intermediate: they exist
+ * for one band at a time, in scratch memory that stays in cache (band.h).
+ *
+ * A call has three passes:
+ *
+ *   1. locate        per disc, in parallel: pose, damping, rows and columns; `moved` if one of pose and damping differs.
+ *   2. list_bands    one thread: the discs of each band in the order of x, and which bands have changed. A
+ *                    band without a change is not painted again.
+ *   3. band_paint    per changed band, in parallel: runs, eps, and owner weights B(eps) as if each cell had one owner.
+ *      band_share    corrects the cells with several owners: B(min(1, sum eps_p)) and w_p = eps_p/sum eps (22).
+ *
+ * eps is computed from line tables (disc_kernel.c), in wide discs for the cells of the rim only. The chords of the two
+ * lines of a row bound the rim, so that no list of boundary cells is stored between steps (the modified Verlet list of
+ * the paper).
+ *
+ * No races: pass 1 writes arrays of its disc, and pass 3 writes the band and, of each disc in the band, the entries of
+ * run_index[] of its rows in the band. Orders (discs along x, runs in a row, owners of a cell) are by position, then by
+ * index. */
 #include "solid/occupation.h"
 
 #include "base/memory.h"
@@ -8,7 +29,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Rows and columns that a disc can touch. */
+/* Upper bound of the number of rows, and of columns, of a disc. */
 static size_t max_lines(double radius)
 {
   return (size_t)ceil(2 * radius) + 2;
@@ -79,7 +100,7 @@ void occupation_destroy(struct occupation *o)
   *o = (struct occupation){0};
 }
 
-/* Notes where disc i is now, and how it spins. Rows that lie in no band keep no_run. */
+/* Updates pose, damping and rows of disc i. Rows beyond walls lie in no band: their entries remain no_run. */
 static void locate(struct occupation *o, const struct discs *discs, size_t i)
 {
   const struct shape_kind *kind = discs->shape[i].kind;
@@ -101,7 +122,7 @@ static void locate(struct occupation *o, const struct discs *discs, size_t i)
   for (size_t k = 0; k < 2 * (size_t)o->rows[i]; k++) o->run_index[2 * o->first_row[i] + k] = no_run;
 }
 
-/* Insertion sort: discs keep their order from step to step but for a few. */
+/* Insertion sort: between steps the order changes in few places. */
 static void sort_by_x(struct occupation *o)
 {
   for (size_t k = 1; k < o->discs; k++) {
@@ -139,7 +160,7 @@ static bool sort_from_scratch(struct occupation *o, struct status *status)
   return true;
 }
 
-/* Visits each band that rows low .. high touch, once, from the lowest on. */
+/* Iterator over the bands of rows y .. high, from the lowest; a periodic box may reach the first one again. */
 struct band_walk {
   int y, high, first, previous;
 };
@@ -155,7 +176,7 @@ static struct band_walk walk_bands(const struct occupation *o, int row, int rows
   return walk;
 }
 
-/* The next band, or -1 past the last. */
+/* The next band, or -1 after the last. */
 static int next_band(const struct occupation *o, struct band_walk *walk)
 {
   while (walk->y <= walk->high) {
@@ -170,7 +191,7 @@ static int next_band(const struct occupation *o, struct band_walk *walk)
   return -1;
 }
 
-/* Bands that a moved disc has left or come to. Returns whether there are any. */
+/* Marks the bands that contain, or contained, a disc that has moved. False if there is none. */
 static bool mark_changed(struct occupation *o)
 {
   bool any = !o->painted;
@@ -184,7 +205,8 @@ static bool mark_changed(struct occupation *o)
   return any;
 }
 
-/* Lists the discs of every band, along x. The end of band k doubles as the place where the next of k + 1 is entered. */
+/* Counting sort of the discs by band, in the order of x within a band. While discs are inserted, band_start[k + 1] is
+ * the end of the list of band k so far. */
 static bool list_bands(struct occupation *o, struct status *status)
 {
   memset(o->band_start, 0, ((size_t)o->band_count + 1) * sizeof *o->band_start);
@@ -208,7 +230,7 @@ static bool list_bands(struct occupation *o, struct status *status)
   return true;
 }
 
-/* What follows from where the discs are, before bands are painted. */
+/* Pass 2, and scratch memory for all threads. */
 static bool prepare_bands(struct occupation *o, struct status *status)
 {
   const size_t threads = (size_t)omp_get_num_threads();
@@ -254,7 +276,7 @@ bool stage_occupation(struct occupation *o, const struct discs *discs, struct te
   return !o->leave_unpainted;
 }
 
-/* Adds the areas of a run of row y, which belongs to a row of its disc before the box wraps or cuts it. */
+/* Adds the occupation fractions of a run, computed for its row before wrapping and cutting. */
 static void add_fractions(const struct occupation *o, const struct discs *discs, const struct run *run, double *eps,
                           double *scratch)
 {

@@ -1,24 +1,10 @@
-/* Occupation: which cells each disc covers, and how much of them.
+/* Occupation: the cells of each disc and the owner weights w_p B of these cells (fluid/runs.h), as runs of cells in
+ * rows.
  *
- * A disc is convex, so it covers one run of cells in each row. Nothing is as large as the box: a band of rows holds the
- * runs of its own rows, and the shares of the weight B of their cells; the occupation fractions eps, from which these follow,
- * stay in cache while a band is painted. The step then needs,
- * per row, the runs of all discs from left to right:
- *
- *   1. places    per disc, in parallel: the rows it covers, and whether it has moved.
- *   2. bands     of each band, which discs lie in it, along x; and whether one of them has come, gone or moved. If none
- *                has, the band stays as it is.
- *   3. rows      per band, in parallel: the runs of its rows, sorted by first cell. eps come from line tables
- *                (disc_kernel.c), of wide discs for the rim only: where it ends follows from the chords of the row's two lines,
- *                so that no list of boundary cells need be kept from step to step, as the modified Verlet list does.
- *                Runs that overlap share cells; there B follows from the total eps = min(1, sum eps_p), of which owner
- *                p has the share w_p B with w_p = eps_p/sum eps (22), for any number of owners.
- *
- * A band's runs, and the shares of cells in its rows, are written by the one thread that has the band: no races. All
- * orders (discs along x, runs in a row, owners of a cell, bands) follow from positions and indices alone, never from
- * threads or history: results are the same for any number of threads and after a restart.
- *
- * Discs may reach beyond walls (their runs are cut there) and across periodic sides (their runs wrap). */
+ * Contract. After stage_occupation the tables describe the poses in `discs`: occupation_row has the runs of a row from
+ * left to right, and occupation_sums has the sums that the sweep has taken over one run. The cells of a disc beyond a
+ * wall have no run; across a periodic side the runs wrap. The tables depend on poses and indices alone, so that they
+ * are the same bits for any number of threads and after a restart. Design: occupation.c. */
 #ifndef DELBM_SOLID_OCCUPATION_H
 #define DELBM_SOLID_OCCUPATION_H
 
@@ -35,12 +21,12 @@ struct band {
   struct run *runs;
   size_t run_capacity;
   size_t row_start[BAND_ROWS], row_end[BAND_ROWS]; /* runs of the band's row k: row_start[k] .. row_end[k] - 1 */
-  double *owner_weight;                            /* w_p B of their cells, row by row as the sweep meets them */
+  double *owner_weight;                            /* of the cells of all runs, in the order of the sweep */
   size_t weight_capacity;
-  struct moment_sums *sums; /* of each run: taken by the sweep, added up by the exchange */
+  struct moment_sums *sums; /* [run], written by the sweep and read by the exchange */
   size_t sums_capacity;
   size_t shared_cells;  /* cells of the band with more than one owner */
-  size_t shared_owners; /* and their owners, all told */
+  size_t shared_owners; /* number of owners of these cells together */
 };
 
 struct band_draft;
@@ -55,45 +41,44 @@ struct occupation {
 
   size_t discs;
   bool painted;                /* at least once */
-  double *x, *y, *angle;       /* pose of each disc when it was painted; angle only of shapes that are not round */
-  double *damping;             /* and the damping in its cells (weight.h) */
-  int32_t *column;             /* of its leftmost cell, before wrapping */
-  int32_t *row, *rows;         /* its lowest cell, and how many rows it covers */
-  uint8_t *moved;              /* since it was last painted */
-  int32_t *old_row, *old_rows; /* of those, then */
-  size_t *first_row;           /* of the disc's rows in run_index[] */
-  size_t *run_index;           /* [2 row + piece] the run's number in its band, or no_run */
+  double *x, *y, *angle;       /* pose of each disc in the tables; angle: of shapes that are not round */
+  double *damping;             /* of each disc, in its cells (weight.h) */
+  int32_t *column;             /* of the leftmost cell of each disc, before wrapping */
+  int32_t *row, *rows;         /* lowest row of each disc before wrapping, number of rows */
+  uint8_t *moved;              /* pose or damping differs from the previous call */
+  int32_t *old_row, *old_rows; /* rows of a moved disc in the previous call */
+  size_t *first_row;           /* index of the first row of each disc in run_index[] */
+  size_t *run_index;           /* [2 row + piece] index of the run in its band, or no_run */
 
   uint32_t *order;      /* discs by x, then index */
   size_t *band_start;   /* [bands + 1] discs of band k: band_discs[band_start[k]] .. */
-  uint32_t *band_discs; /* in the order above */
+  uint32_t *band_discs; /* within a band in the order of order[] */
   size_t band_discs_capacity;
-  uint8_t *changed; /* of each band: to be painted anew */
+  uint8_t *changed; /* [band] a disc in it has moved, entered or left */
   struct band *bands;
-  struct band_draft *drafts; /* of each thread: what is needed of a band only while it is painted */
+  struct band_draft *drafts; /* [thread] scratch memory (band.h) */
   size_t draft_count;
   int band_count;
-  bool leave_unlisted, leave_unpainted; /* after the listing of bands, after the painting (team.h) */
+  bool leave_unlisted, leave_unpainted; /* flags of team.h, after the lists and after the painting */
 };
 
-/* Sets up tables for the scene's discs. */
+/* Allocates the tables of the scene's discs; stage_occupation fills them. */
 bool occupation_create(struct occupation *occupation, const struct scene *scene, const struct discs *discs,
                        struct status *status);
 void occupation_destroy(struct occupation *occupation);
 
-/* The stage, called by all threads of a parallel region or outside of one. Bands whose discs have not moved since they were
- * painted are not painted again. Fails if memory runs out. */
+/* Updates the tables to the poses of the discs. Called by all threads of a parallel region, or outside of one. Fails if
+ * memory runs out. */
 bool stage_occupation(struct occupation *occupation, const struct discs *discs, struct team *team);
 
 static const size_t no_run = SIZE_MAX;
 
-/* The band that row y lies in. */
 static inline struct band *occupation_band(const struct occupation *o, int y)
 {
   return &o->bands[y / BAND_ROWS];
 }
 
-/* The runs of row y, from left to right. */
+/* The runs of row y, in the order of their first cells. */
 static inline const struct run *occupation_row(const struct occupation *o, int y, size_t *count)
 {
   const struct band *band = occupation_band(o, y);
@@ -102,7 +87,7 @@ static inline const struct run *occupation_row(const struct occupation *o, int y
   return band->runs + start;
 }
 
-/* Whether row y, or cell (x, y), lies next to a side that discs cannot leave through. */
+/* True for rows, and cells, beside a side that is not periodic. */
 static inline bool occupation_row_at_side(const struct occupation *o, int y)
 {
   return !o->periodic[1] && (y == 0 || y == o->size[1] - 1);
@@ -113,19 +98,20 @@ static inline bool occupation_at_side(const struct occupation *o, int x, int y)
   return (!o->periodic[0] && (x == 0 || x == o->size[0] - 1)) || occupation_row_at_side(o, y);
 }
 
-/* Of cells with at most this damping in their owners; `between`: a disc and another, or a side. */
+/* Weight of cells; `damping`: maximum over their owners. `between`: cells with several owners or beside a side. */
 static inline struct weight_law occupation_law(const struct occupation *o, double damping, bool between)
 {
   const double min_damping = between ? weight_damping_between(o->form) : 0;
   return weight_law(o->form, o->viscosity, damping > min_damping ? damping : min_damping);
 }
 
-/* The part of each cell of row y that discs cover, min(1, sum eps_p), for all columns. `scratch` has room for the cells of
- * a row of any disc and SHAPE_PAD more. */
+/* Occupation fraction min(1, sum eps_p) of each cell of row y. `scratch`: room for the widest row of a disc and
+ * SHAPE_PAD more. */
 void occupation_fractions(const struct occupation *occupation, const struct discs *discs, int y, double *eps,
                           double *scratch);
 
-/* The sums of one piece of the disc's row k, and that row before wrapping; NULL where nothing of it lies in the box. */
+/* The sums of one piece of row k of the disc; NULL if no cell of the piece lies in the box. *y: the row before
+ * wrapping. */
 static inline const struct moment_sums *occupation_sums(const struct occupation *o, size_t disc, int k, int piece,
                                                         int *y)
 {

@@ -1,5 +1,5 @@
 /* The shape of a body. The rest of the program accesses a shape only by the functions of struct shape_kind. Shapes
- * are convex, so that a body occupies one run of cells in each row.
+ * are convex, so that a body has one run of cells in each row.
  *
  * A new shape is one file that defines a struct shape_kind, the fields of struct shape for its measures, and a line in
  * discs.c that chooses it. Lattice units; angles in radians, counter-clockwise. */
