@@ -83,5 +83,5 @@ Test(plot, of_no_run_is_an_error)
   cr_expect_eq(shell("$DELBM plot absent 2>err"), 4);
   cr_expect_eq(shell("$DELBM plot 2>err"), 2);
   cr_expect_eq(shell("mkdir bare; cp pair.yaml bare/case.yaml; $DELBM plot bare 2>err"), 4);
-  cr_expect_eq(shell("grep -q '^delbm: nothing to plot: bare holds no results$' err"), 0);
+  cr_expect_eq(shell("grep -q '^delbm: nothing to plot: bare contains no results$' err"), 0);
 }

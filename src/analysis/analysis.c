@@ -32,14 +32,15 @@ static void add_body(struct figures *f, const struct body *b)
   const bool prescribed = b->prescribed;
   if (isfinite(b->speed.mean)) {
     add(f, "body", "first_step", (double)b->first, "steps", "start of the window that means are taken over");
-    add(f, "body", "last_step", (double)b->last, "steps", "its end");
+    add(f, "body", "last_step", (double)b->last, "steps", "end of this window");
   }
   add(f, "body", "speed", b->speed.mean, "cells/step",
       prescribed ? "U, of the fluid relative to the disc" : "terminal, U");
-  if (!prescribed) add(f, "body", "speed_spread", b->speed.deviation, "cells/step", "standard deviation of that");
+  if (!prescribed)
+    add(f, "body", "speed_spread", b->speed.deviation, "cells/step", "standard deviation of the speed in the window");
   if (isfinite(b->fastest)) {
     add(f, "body", "fastest", b->fastest, "cells/step", "largest speed along gravity's axis");
-    add(f, "body", "fastest_step", (double)b->fastest_step, "steps", "when");
+    add(f, "body", "fastest_step", (double)b->fastest_step, "steps", "time of the largest speed");
   }
   add(f, "body", "reynolds", b->reynolds, "-", "2 U R/nu");
   add(f, "body", "drag", b->drag, "-", prescribed ? "C_D = F/(rho U^2 R)" : "C_D = pi R g (rho_s - rho)/(rho U^2)");
@@ -52,48 +53,51 @@ static void add_body(struct figures *f, const struct body *b)
   add(f, "body", "spin", b->spin, "-", "omega R/U");
   add(f, "body", "strouhal", b->strouhal, "-", "2 f R/U of the shedding");
   add(f, "body", "swing", b->swing, "-", prescribed ? "amplitude of C_L" : "amplitude of the lateral velocity over U");
-  add(f, "body", "swing_growth", b->growth, "-", "of that, from the first to the last third; 1: shedding is developed");
+  add(f, "body", "swing_growth", b->growth, "-",
+      "growth of the amplitude from the first to the last third; 1: shedding is developed");
 }
 
 static void add_pair(struct figures *f, const struct pair *p)
 {
   add(f, "pair", "draft_time", p->draft_time, "steps", "trailing disc falls fastest before contact");
-  add(f, "pair", "draft_speed", p->draft_speed, "cells/step", "its velocity then");
+  add(f, "pair", "draft_speed", p->draft_speed, "cells/step", "velocity of the trailing disc at draft_time");
   add(f, "pair", "kiss_time", p->kiss_time, "steps", "first contact");
   add(f, "pair", "kiss_offset", p->offset, "cells", "between the centres across gravity at first contact");
   add(f, "pair", "even_time", p->even_time, "steps", "speeds equal within 2 %");
   add(f, "pair", "tumble_time", p->tumble_time, "steps", "trailing disc passes the leading one");
-  add(f, "pair", "tumble_height", p->tumble_height, "cells", "where");
+  add(f, "pair", "tumble_height", p->tumble_height, "cells", "height of the discs at tumble_time");
   add(f, "pair", "throw_time", p->throw_time, "steps", "leading disc fastest sideways");
-  add(f, "pair", "throw_speed", p->throw_speed, "cells/step", "its velocity then");
-  add(f, "pair", "slow_time", p->slow_time, "steps", "leading disc slowest after that");
-  add(f, "pair", "slow_speed", p->slow_speed, "cells/step", "its velocity then");
+  add(f, "pair", "throw_speed", p->throw_speed, "cells/step", "velocity of the leading disc at throw_time");
+  add(f, "pair", "slow_time", p->slow_time, "steps", "leading disc slowest after throw_time");
+  add(f, "pair", "slow_speed", p->slow_speed, "cells/step", "velocity of the leading disc at slow_time");
   add(f, "pair", "wall_time", p->wall_time, "steps", "leading disc nearest to a side wall");
-  add(f, "pair", "wall_distance", p->wall_distance, "cells", "its centre from it");
+  add(f, "pair", "wall_distance", p->wall_distance, "cells", "between the leading disc's centre and this wall");
 }
 
 static void add_settling(struct figures *f, const struct settling *s)
 {
   const size_t last = s->snapshots - 1;
-  add(f, "settling", "interface_speed", -s->fall.slope, "cells/step", "fall of the interface, from 10 to 70 % of it");
-  add(f, "settling", "interface_r2", s->fall.r2, "-", "R^2 of that line");
-  add(f, "settling", "front_speed", s->rise.slope, "cells/step", "rise of the sediment's surface meanwhile");
-  add(f, "settling", "front_r2", s->rise.r2, "-", "R^2 of that line");
+  add(f, "settling", "interface_speed", -s->fall.slope, "cells/step",
+      "fall of the interface, from 10 to 70 % of its way");
+  add(f, "settling", "interface_r2", s->fall.r2, "-", "R^2 of the linear fit of interface_speed");
+  add(f, "settling", "front_speed", s->rise.slope, "cells/step", "rise of the sediment's surface in the same time");
+  add(f, "settling", "front_r2", s->rise.r2, "-", "R^2 of the linear fit of front_speed");
   /* flux of discs through the front (Kynch): phi0 (u + s) = phi_bed s */
   add(f, "settling", "front_speed_kynch", -s->fall.slope * s->initial / (s->bed - s->initial), "cells/step",
       "of a jump from the initial concentration to the bed's");
-  add(f, "settling", "front_width", s->sharpness, "cells", "over which half of that change happens");
-  add(f, "settling", "concentration", s->initial, "-", "at the start");
+  add(f, "settling", "front_width", s->sharpness, "cells",
+      "height over which half of the change between these concentrations occurs");
+  add(f, "settling", "concentration", s->initial, "-", "initial concentration");
   add(f, "settling", "bed", s->bed, "-", "concentration of the bed at the end");
   add(f, "settling", "interface_start", s->interface[0], "cells", "height of the interface at the start");
   add(f, "settling", "interface_end", s->interface[last], "cells", "height of the interface at the end");
   add(f, "settling", "mixing_start", s->mixing[0], "-", "Lacey's mixing index of five bands at the start");
-  add(f, "settling", "mixing_end", s->mixing[last], "-", "the same at the end");
+  add(f, "settling", "mixing_end", s->mixing[last], "-", "Lacey's mixing index of five bands at the end");
   add(f, "settling", "lambda_bed_slope", s->lambda_bed.slope, "-",
       "mixing index (25) over height/box height in the sediment at the end");
-  add(f, "settling", "lambda_bed_r2", s->lambda_bed.r2, "-", "R^2 of that line");
+  add(f, "settling", "lambda_bed_r2", s->lambda_bed.r2, "-", "R^2 of the linear fit of lambda_bed_slope");
   add(f, "settling", "lambda_above_slope", s->lambda_above.slope, "-",
-      "the same above the sediment, when the interface has fallen half of its way");
+      "mixing index (25) over height/box height above the sediment, at half of the interface's way");
   add(f, "settling", "fastest_end", s->restless, "cells/step", "fastest disc at the end");
 }
 

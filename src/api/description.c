@@ -20,7 +20,7 @@ static void write_side(const char *name, const struct delbm_side *side, FILE *te
   if (length > 0)
     fprintf(text, "%.*s", length, type);
   else
-    fprintf(text, "%u", (unsigned)side->type); /* which reading refuses */
+    fprintf(text, "%u", (unsigned)side->type); /* invalid; refused by case_read_text */
   if (side->velocity[0] != 0 || side->velocity[1] != 0) write_pair(", velocity", side->velocity, text);
   fputs("}\n", text);
 }
@@ -54,7 +54,7 @@ static void write_scene(const struct delbm_scene *scene, FILE *text)
   for (size_t i = 0; i < scene->disc_count; i++) write_disc(&scene->discs[i], text);
 }
 
-/* A text that grows. Not open_memstream, which loses what it has no memory for and says so to nobody. */
+/* A growing text; not open_memstream, which loses output without an error when memory runs out. */
 struct growing {
   char *bytes;
   size_t length, capacity;

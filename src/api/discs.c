@@ -84,7 +84,7 @@ enum delbm_code delbm_read_discs(const struct delbm_simulation *s, size_t first,
   return api_leave(&call, good);
 }
 
-/* Moves the discs, or puts them back where painting them lacks memory. */
+/* Sets the states of the discs, or resets them if memory runs out. */
 static bool move(struct delbm_simulation *s, size_t first, size_t count, const struct delbm_disc_state *states,
                  struct status *status)
 {

@@ -1,6 +1,6 @@
-/* Discs driven by callbacks. A callback sets the velocity before the step, which then runs as for any driven disc and
- * reports what the fluid hands over. The fluid inside takes part in the change of velocity; as for free discs
- * (exchange.h) the force on the solid has m_f dV added for it. */
+/* Discs driven by callbacks. A callback sets the velocity before the step, which then treats the disc as any driven
+ * disc. The fluid inside the disc is accelerated, too; as for free discs (exchange.h), m_f dV is added to the force on
+ * the solid. */
 #include "api/drive.h"
 
 #include "api/discs.h"
@@ -46,7 +46,7 @@ enum delbm_code delbm_drive(struct delbm_simulation *s, size_t disc, delbm_drive
   return api_leave(&call, good);
 }
 
-/* Notes the velocity and the spin that a callback asks for. */
+/* Calls the callback of a disc in the caller's locale, and checks and stores the velocity and spin that it returns. */
 static bool ask(const struct delbm_simulation *s, struct drive *drive, struct api_call *call)
 {
   const struct delbm_disc_state now = api_disc_state(simulation_discs(s->simulation), drive->disc);

@@ -4,9 +4,9 @@
 
 #include "api/handle.h"
 
-/* Before a step and after it: asks the callbacks, in the caller's locale, and sets what they ask for, or nothing if one of
- * them asks for too much; makes the forces whole. */
+/* Before a step: calls all callbacks and sets the velocities that they return, or none if one is above the limits. */
 bool api_drive_begin(struct delbm_simulation *simulation, struct api_call *call);
+/* After a step: adds the inertia of the fluid inside to the forces. */
 void api_drive_end(struct delbm_simulation *simulation);
 
 #endif

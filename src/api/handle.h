@@ -1,4 +1,4 @@
-/* What is behind the public handle, and how its calls report. */
+/* The public handle, and start and end of its calls. */
 #ifndef DELBM_API_HANDLE_H
 #define DELBM_API_HANDLE_H
 
@@ -12,7 +12,7 @@ struct drive {
   size_t disc;
   delbm_drive_function *function;
   void *context;
-  double wanted[3], change[3]; /* velocity and spin of the present step, and how they differ from those before it */
+  double wanted[3], change[3]; /* velocity and spin in the present step, and their change from the previous step */
 };
 
 struct delbm_simulation {
@@ -21,23 +21,23 @@ struct delbm_simulation {
   uint32_t fingerprint; /* of the scene */
   struct drive *drives; /* [drive_count], by disc */
   size_t drive_count, drive_capacity;
-  bool lost; /* a call has failed that could not leave the state as it was */
+  bool lost; /* a failed call has changed the state: the handle can only be closed */
 };
 
-/* A call of the library between its first line and its last. */
+/* A call of the library in progress. */
 struct api_call {
   struct delbm_status *out; /* of the caller; may be NULL */
   locale_t locale;          /* of the caller */
   struct status status;
 };
 
-/* Begins a call: in the C locale from here on. False if the simulation, which may be NULL, can only be closed. */
+/* Begins a call and enters the C locale. False if the simulation (may be NULL) can only be closed. */
 bool api_enter(struct api_call *call, const struct delbm_simulation *simulation, struct delbm_status *out);
 
-/* Ends it and hands its outcome to the caller: the code of call->status if not `good`. */
+/* Ends a call, and returns its code and message to the caller: of call->status if not `good`. */
 enum delbm_code api_leave(struct api_call *call, bool good);
 
-/* The same for a case with errors, if there are any: as many of them as there is room for. */
+/* api_leave with the errors of a case as message, as many as fit. */
 enum delbm_code api_leave_case(struct api_call *call, bool good, const struct case_errors *errors);
 
 #endif

@@ -7,13 +7,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Where a case comes from: a file, or a text with the name that messages give it. */
+/* Source of a case: a file, or a text with a name for messages. */
 struct source {
   const char *path;
   struct yaml_text text;
 };
 
-/* A case needs a length, which has no meaning here. */
+/* The required run.steps has no meaning in the library. */
 static char length_setting[] = "run.steps=0";
 
 static bool read_case(struct scene *scene, const struct source *source, char *const set[], size_t count,
@@ -28,7 +28,8 @@ static bool read_with_length(struct scene *scene, const struct source *source, c
 {
   char **set = memory_allocate(count + 1, sizeof *set, "the settings", status);
   if (!set) return false;
-  for (size_t i = 0; i < count; i++) memcpy(&set[i], &settings[i], sizeof set[i]); /* read only, like their array */
+  for (size_t i = 0; i < count; i++)
+    memcpy(&set[i], &settings[i], sizeof set[i]); /* char *: not modified, as their array */
   set[count] = length_setting;
   const bool read = read_case(scene, source, set, count + 1, errors, status);
   free(set);
@@ -51,7 +52,7 @@ static bool open_source(struct delbm_simulation *s, const struct source *source,
          case_fingerprint(&s->scene, &s->fingerprint, status) && simulation_create(&s->simulation, &s->scene, status);
 }
 
-/* *simulation becomes what was opened, or NULL. */
+/* Sets *simulation to the opened simulation, or NULL. */
 static enum delbm_code open_and_leave(struct api_call *call, struct delbm_simulation **simulation,
                                       const struct source *source, const char *const settings[], size_t count)
 {

@@ -19,7 +19,7 @@ struct store {
 /* Saves or restores `size` bytes. Fails with DELBM_IO on a write error, or at a premature end of the file. */
 bool store_bytes(struct store *store, void *data, size_t size, struct status *status);
 
-/* Saves a name for the part that follows, or fails if it differs when restored. */
+/* Saves a name before a part of the state, or fails if it differs when restored. */
 bool store_mark(struct store *store, const char *name, struct status *status);
 
 #endif

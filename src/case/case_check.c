@@ -13,7 +13,7 @@
 static const double max_cells = 8589934592.0; /* 2^33 */
 static const double cell_bytes = 72;          /* nine populations in double precision */
 static const double max_discs = 5e7;
-static const double max_cover = 4; /* the discs' areas together, of the box */
+static const double max_cover = 4; /* sum of the areas of the discs, over the area of the box */
 static const double clearance = 4; /* cells between a disc and its own image across a periodic axis */
 
 static const double gib = 1 << 30;
@@ -67,7 +67,7 @@ static void check_side_velocity(struct draft *draft, enum side_name s)
   const struct side *side = &draft->scene.domain.side[s];
   const char axis = "xy"[side_axis(s)];
   if (!draft_knows(draft, keys->type) || !draft_knows(draft, keys->velocity)) return;
-  bool given = draft_gives(draft, keys->velocity);
+  bool given = draft_has(draft, keys->velocity);
   const double normal = side->velocity[side_axis(s)];
   const struct side_kind *kind = side_kind_of(side->type);
   if (kind->velocity == VELOCITY_ALONG && normal != 0)
@@ -89,24 +89,24 @@ static void check_sides(struct draft *draft)
     if (sides[s].type == SIDE_PERIODIC && sides[other].type != SIDE_PERIODIC)
       draft_refuse(draft, side_keys[s].type, "the %s side to be periodic too, or neither", side_name_text(other));
     if (sides[s].type == SIDE_INLET && !has_side(draft, SIDE_OUTLET))
-      draft_refuse(draft, side_keys[s].type, "an outlet on another side, for what flows in");
+      draft_refuse(draft, side_keys[s].type, "an outlet on another side, for the inflow");
   }
 }
 
 static void refuse_if_given(struct draft *draft, const char *const paths[], size_t count, const char *expected)
 {
   for (size_t i = 0; i < count; i++) {
-    if (draft_gives(draft, paths[i])) draft_refuse(draft, paths[i], "%s", expected);
+    if (draft_has(draft, paths[i])) draft_refuse(draft, paths[i], "%s", expected);
   }
 }
 
-/* Which rates may be given depends on the collision operator. */
+/* The collision operator decides which rates are allowed. */
 static void check_rate_keys(struct draft *draft)
 {
   static const char *const paths[] = {"fluid.rates.e", "fluid.rates.q", "fluid.rates.magic", "fluid.magic"};
   if (!draft_knows(draft, "fluid.collision")) return;
   enum collision collision = draft_collision(draft);
-  bool magic = draft_gives(draft, "fluid.magic"), rates_magic = draft_gives(draft, "fluid.rates.magic");
+  bool magic = draft_has(draft, "fluid.magic"), rates_magic = draft_has(draft, "fluid.rates.magic");
   if (collision == COLLISION_BGK) {
     refuse_if_given(draft, paths, 4, "no such key with collision bgk, whose one rate follows from the viscosity");
     return;
@@ -117,14 +117,14 @@ static void check_rate_keys(struct draft *draft)
     refuse_if_given(draft, &paths[1], 1,
                     "no such key with collision adaptive, whose rate q follows from magic and speed");
   if (magic && rates_magic) draft_refuse(draft, "fluid.rates.magic", "magic once, here or as fluid.magic");
-  if (collision == COLLISION_MRT && (magic || rates_magic) && draft_gives(draft, "fluid.rates.q"))
+  if (collision == COLLISION_MRT && (magic || rates_magic) && draft_has(draft, "fluid.rates.q"))
     draft_refuse(draft, "fluid.rates.q", "q or magic, which sets q, but not both");
 }
 
-/* Rates must lie between 0 and 2 in floating point too. */
+/* s_nu and s_q must lie between 0 and 2 also after rounding to floating point. */
 static void check_rates(struct draft *draft)
 {
-  const char *magic = draft_gives(draft, "fluid.magic") ? "fluid.magic" : "fluid.rates.magic";
+  const char *magic = draft_has(draft, "fluid.magic") ? "fluid.magic" : "fluid.rates.magic";
   double viscosity = draft->scene.fluid.viscosity;
   check_rate_keys(draft);
   if (!draft_knows(draft, "fluid.viscosity")) return;
@@ -132,12 +132,12 @@ static void check_rates(struct draft *draft)
     draft_refuse(draft, "fluid.viscosity", "a viscosity large enough for 3 viscosity + 1/2 to differ from 1/2");
     return;
   }
-  if (!draft_gives(draft, magic) || !draft_knows(draft, magic)) return;
+  if (!draft_has(draft, magic) || !draft_knows(draft, magic)) return;
   double rate = rate_from_magic(draft->scene.fluid.magic, viscosity);
   if (rate >= 2) draft_refuse(draft, magic, "a value large enough for the rate q to be below 2");
 }
 
-/* Areas by cells are known once a step. */
+/* Areas by cells exist once a step, not once a sub-step. */
 static void check_substeps(struct draft *draft)
 {
   const struct scene *scene = &draft->scene;
@@ -154,13 +154,13 @@ static void check_law(struct draft *draft)
 
 static void check_zero_flux(struct draft *draft)
 {
-  if (!draft_gives(draft, "fluid.zero_flux") || !draft_knows(draft, "fluid.zero_flux") || !sides_known(draft)) return;
+  if (!draft_has(draft, "fluid.zero_flux") || !draft_knows(draft, "fluid.zero_flux") || !sides_known(draft)) return;
   bool closed = scene_is_closed(&draft->scene, 0) || scene_is_closed(&draft->scene, 1);
   if (draft->scene.fluid.zero_flux && !closed)
     draft_refuse(draft, "fluid.zero_flux", "false, because walls close neither axis");
 }
 
-/* Says so if a disc of this radius meets its own image across a periodic axis. */
+/* Refuses a disc that would touch its own image across a periodic axis. */
 static void check_images(struct draft *draft, double radius, const char *path)
 {
   static const char *const names[] = {"x", "y"};
@@ -180,7 +180,7 @@ static const char *disc_path(char path[DISC_PATH], size_t i, const char *name)
   return path;
 }
 
-/* True if the table has found nothing wrong with a listed disc. */
+/* True if a listed disc has passed the checks of the table. */
 static bool disc_known(const struct tree_node *list, size_t i)
 {
   return !list->entries[i].value->refused;
@@ -205,7 +205,7 @@ static void check_disc(struct draft *draft, size_t i)
                  "|velocity| + |spin| radius <= %g, not %.3g, for the Mach number's sake", scene_max_speed, speed);
 }
 
-/* A centre and whose it is. */
+/* Centre of a disc. */
 struct centre {
   double at[2];
   size_t disc;
@@ -221,7 +221,7 @@ static int compare_centres(const void *a, const void *b)
   return (left->disc > right->disc) - (left->disc < right->disc);
 }
 
-/* Two discs with one centre have no contact normal. */
+/* Refuses two discs with the same centre: their contact has no normal. */
 static bool check_centres(struct draft *draft, const struct tree_node *list, struct status *status)
 {
   size_t count = 0;
@@ -243,7 +243,7 @@ static bool check_centres(struct draft *draft, const struct tree_node *list, str
   return true;
 }
 
-/* Discs that lie over each other many times meet in more pairs than any memory holds. */
+/* Limits the number of overlapping pairs, which would exceed memory. */
 static void check_cover(struct draft *draft, const struct tree_node *list)
 {
   const double box = (double)draft->scene.domain.size[0] * draft->scene.domain.size[1];
@@ -253,11 +253,11 @@ static void check_cover(struct draft *draft, const struct tree_node *list)
     if (disc_known(list, i)) covered += fmin(M_PI * radius * radius, box);
   }
   if (draft_knows(draft, "domain.size") && covered > max_cover * box)
-    draft_refuse(draft, "particles.discs", "discs that together cover the box at most %g times, not %.4g times",
+    draft_refuse(draft, "particles.discs", "discs with a total area of at most %g times the box, not %.4g times",
                  max_cover, covered / box);
 }
 
-/* A disc deep in a side, or in another disc, leaves it faster than fluid can follow. */
+/* Refuses overlaps that contacts would push apart faster than fluid flows in (case_overlaps.h). */
 static void check_depth(struct draft *draft, const struct case_overlap *overlap)
 {
   const bool side = case_overlap_is_with_side(overlap);
@@ -266,16 +266,17 @@ static void check_depth(struct draft *draft, const struct case_overlap *overlap)
   if (side && overlap->depth > max_depth_in_side)
     draft_refuse(
         draft, path,
-        "at most %g cells beyond a side, not %.3g beyond the %s one, for fluid to follow as the disc leaves it",
+        "at most %g cells beyond a side, not %.3g beyond the %s one, since fluid has to flow in as the disc leaves it",
         max_depth_in_side, overlap->depth, side_name_text((enum side_name)(overlap->b - overlap_sides)));
   if (!side && overlap->depth > max_depth_in_disc)
-    draft_refuse(draft, path,
-                 "at most %g cells within another disc, not %.3g within disc %zu, for fluid to follow as they part",
-                 max_depth_in_disc, overlap->depth, overlap->b);
+    draft_refuse(
+        draft, path,
+        "at most %g cells within another disc, not %.3g within disc %zu, since fluid has to flow in as they part",
+        max_depth_in_disc, overlap->depth, overlap->b);
 }
 
-/* How far a disc of this speed, `gap` before a side, goes beyond it: its energy on arrival, after drag (coefficient 1), with
- * the fluid inside, is that of the spring, 2/5 of force times depth at small overlap. */
+/* Largest overlap with a side of a disc at distance `gap` with this speed. Kinetic energy on arrival (drag coefficient
+ * 1, mass of the fluid inside included) equals the energy of the contact, 2/5 force times depth at small overlap. */
 static double depth_of_impact(const struct draft *draft, const struct disc_spec *disc, double gap, double speed)
 {
   const struct scene *scene = &draft->scene;
@@ -310,7 +311,7 @@ static bool check_depths(struct draft *draft, const struct tree_node *list, stru
   struct case_overlaps found;
   bool known = sides_known(draft) && draft_knows(draft, "domain.size") && draft->scene.contact.stiffness > 0;
   for (size_t i = 0; i < list->count; i++) known = known && disc_known(list, i);
-  if (!known || case_errors_total(draft->errors) > 0) return true; /* places that are wrong by themselves come first */
+  if (!known || case_errors_total(draft->errors) > 0) return true; /* wrong positions are reported first */
   const bool ok = case_overlaps_find(&draft->scene, list->count, &found, status);
   for (size_t k = 0; ok && k < found.count; k++) check_depth(draft, &found.list[k]);
   for (size_t i = 0; ok && i < list->count; i++) check_impact(draft, i);
@@ -329,12 +330,12 @@ static bool check_discs(struct draft *draft, struct status *status)
   return check_centres(draft, list, status) && check_depths(draft, list, status);
 }
 
-/* A free disc needs a density: its own or particles.density. */
+/* A free disc needs a density, its own or particles.density. */
 static void check_density(struct draft *draft)
 {
   const struct scene *scene = &draft->scene;
-  if (draft_gives(draft, "particles.density")) return;
-  if (scene->particles.fill.present && !draft_gives(draft, "particles.fill.density")) {
+  if (draft_has(draft, "particles.density")) return;
+  if (scene->particles.fill.present && !draft_has(draft, "particles.fill.density")) {
     draft_refuse(draft, "particles.density", "a number > 0, because the discs of particles.fill have no other density");
     return;
   }
@@ -371,7 +372,7 @@ static void check_count(struct draft *draft, const double region[4])
                  max_discs, discs, discs * sizeof(struct disc_spec) / gib);
 }
 
-/* A region that ended with the box ends with it also where the box has been rounded to whole cells. */
+/* Extends a region to the edge of the box if both were equal before the box was rounded to whole cells. */
 static void end_with_box(const struct draft *draft, double region[4])
 {
   for (int axis = 0; axis < 2; axis++) {
@@ -399,11 +400,11 @@ static void check_fill(struct draft *draft)
   if (check_region(draft, "particles.fill.region", box) && spacing) check_count(draft, box);
 }
 
-/* The part of the box that fields show: at least one cell. */
+/* output.fields.region: at least one cell, within the box. */
 static void check_shown(struct draft *draft)
 {
   static const char path[] = "output.fields.region";
-  if (draft_gives(draft, path) && draft_knows(draft, path) && draft_knows(draft, "domain.size"))
+  if (draft_has(draft, path) && draft_knows(draft, path) && draft_knows(draft, "domain.size"))
     check_region(draft, path, draft->scene.output.fields.region);
 }
 

@@ -17,7 +17,7 @@ static void derive_rates(struct draft *draft)
   draft->scene.fluid.collision = collision;
   rates->s_nu = rate_from_viscosity(viscosity);
   if (collision == COLLISION_BGK || collision == COLLISION_TRT) rates->s_e = rates->s_nu;
-  const double fast = rates->s_q; /* by default the paper's */
+  const double fast = rates->s_q; /* the default: the rate of the paper */
   if (collision == COLLISION_BGK) rates->s_q = rates->s_nu;
   if (collision == COLLISION_TRT && *magic == 0) *magic = default_magic;
   if (collision == COLLISION_ADAPTIVE && *magic == 0) *magic = adaptive_magic;
@@ -40,7 +40,7 @@ static void derive_fill(struct draft *draft)
   struct fill_spec *fill = &draft->scene.particles.fill;
   if (!fill->present) return;
   draft_fill_region(draft, fill->region);
-  if (!draft_gives(draft, "particles.fill.jitter")) fill->jitter = (fill->spacing - 2 * fill->radius) / 4;
+  if (!draft_has(draft, "particles.fill.jitter")) fill->jitter = (fill->spacing - 2 * fill->radius) / 4;
 }
 
 static bool has_free_discs(const struct scene *scene)
@@ -55,7 +55,7 @@ static bool has_free_discs(const struct scene *scene)
 static void derive_zero_flux(struct draft *draft)
 {
   struct scene *scene = &draft->scene;
-  if (draft_gives(draft, "fluid.zero_flux")) return;
+  if (draft_has(draft, "fluid.zero_flux")) return;
   bool closed = scene_is_closed(scene, 0) || scene_is_closed(scene, 1);
   bool heavy = scene->particles.gravity[0] != 0 || scene->particles.gravity[1] != 0;
   scene->fluid.zero_flux = closed && heavy && has_free_discs(scene);
@@ -64,7 +64,7 @@ static void derive_zero_flux(struct draft *draft)
 static void derive_shown(struct draft *draft)
 {
   struct scene *scene = &draft->scene;
-  if (draft_gives(draft, "output.fields.region")) return;
+  if (draft_has(draft, "output.fields.region")) return;
   const double box[4] = {0, 0, scene->domain.size[0], scene->domain.size[1]};
   memcpy(scene->output.fields.region, box, sizeof box);
 }

@@ -1,4 +1,4 @@
-/* Values that follow from other keys where the case does not give them. */
+/* Default values that depend on other keys. */
 #ifndef DELBM_CASE_CASE_DERIVE_H
 #define DELBM_CASE_CASE_DERIVE_H
 

@@ -1,5 +1,4 @@
-/* A case while it is read: the scene as far as it is known, the tree it comes from, and the errors found so far. The table
- * of keys says which field each key fills in. */
+/* A case while it is read: scene so far, source tree, errors so far. The table of keys maps each key to a field. */
 #ifndef DELBM_CASE_CASE_DRAFT_H
 #define DELBM_CASE_CASE_DRAFT_H
 
@@ -7,7 +6,7 @@
 #include "case/case_tree.h"
 #include "model/scene.h"
 
-/* A listed disc while it is read; a density of 0 is not given. */
+/* A listed disc while it is read. A density of 0: not specified. */
 struct disc_draft {
   struct disc_spec spec;
   bool fixed;
@@ -19,12 +18,12 @@ struct draft {
   struct case_errors *errors;
   struct disc_draft disc; /* defaults of a listed disc */
   struct scene scene;
-  const char *title;        /* these two lie in the tree */
+  const char *title;        /* title and kernel point into the tree */
   const char *kernel;       /* NULL: auto */
-  int pattern;              /* the one there is */
-  double lattice_viscosity; /* units.viscosity; 0: not given */
-  double density;           /* particles.density; 0: not given */
-  double size_as_given[2];  /* domain.size before it was rounded to whole cells; 0: it was not */
+  int pattern;              /* particles.fill.pattern */
+  double lattice_viscosity; /* units.viscosity; 0: not specified */
+  double density;           /* particles.density; 0: not specified */
+  double size_as_given[2];  /* domain.size before rounding to whole cells; 0: not rounded */
 };
 
 #endif

@@ -12,7 +12,7 @@ bool case_errors_full(const struct case_errors *errors)
 
 static bool append(struct case_errors *errors, char *line)
 {
-  struct status ignored; /* that a line is lost is told by `dropped` */
+  struct status ignored; /* the line is counted in `dropped` */
   if (case_errors_full(errors)) return false;
   if (!memory_grow(&errors->lines, &errors->capacity, errors->count + 1, sizeof *errors->lines, "errors", &ignored))
     return false;

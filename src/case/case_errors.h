@@ -8,27 +8,27 @@
 
 enum { SCENE_ERRORS_KEPT = 1000 };
 
-/* All zero is an empty list. */
+/* A list; all zero: empty. */
 struct case_errors {
-  struct case_errors *notes; /* for lines on what is taken otherwise than it is written; NULL: not wanted */
+  struct case_errors *notes; /* list for notes on rounded values; NULL: none wanted */
   char **lines;              /* [count] */
   size_t count;
   size_t capacity;
-  size_t dropped; /* further errors, past SCENE_ERRORS_KEPT or for want of memory, of which only the number is known */
+  size_t dropped; /* number of errors without a line: past SCENE_ERRORS_KEPT, or no memory */
 };
 
 void case_errors_add(struct case_errors *errors, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* True once further errors are only counted. */
+/* True if further errors will only be counted. */
 bool case_errors_full(const struct case_errors *errors);
 
-/* Kept and dropped ones. */
+/* Number of errors with and without a line. */
 size_t case_errors_total(const struct case_errors *errors);
 
-/* One error a line, and a last line with the number of those dropped. */
+/* Prints one error a line, and the number of errors without a line. */
 void case_errors_print(const struct case_errors *errors, FILE *file);
 
-/* Releases the lines and leaves an empty list; the notes are the caller's. */
+/* Releases the lines but not the notes; leaves an empty list. */
 void case_errors_clear(struct case_errors *errors);
 
 #endif

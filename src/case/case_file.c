@@ -17,14 +17,14 @@
 
 static const char case_file[] = "case.yaml";
 
-/* The part of a case that is being read: names from the root down, for messages; [] of a list is its index. */
+/* Path of the part of a case that is being read, for messages; an element of a list is named by its index. */
 struct path {
   const struct path *up; /* NULL at the root */
   const char *name;      /* NULL in a list */
   size_t index;
 };
 
-/* Context of reading: a section of the table, its path in the case, and the struct that its keys are stored in. */
+/* A section of the table, its path in the case, and the struct of its values. */
 struct place {
   const char *section;
   const struct path *path;
@@ -88,7 +88,7 @@ static bool refuse_missing(const struct draft *draft, const struct place *place,
   return false;
 }
 
-/* Notes where numbers of the node have been rounded to whole ones. */
+/* Adds a note if a number of the node was rounded to a whole one. */
 static void note_rounding(struct draft *draft, const struct key *key, const struct path *path,
                           const struct tree_node *node)
 {
@@ -113,8 +113,8 @@ static bool read_key(struct draft *draft, const struct key *key, const struct pa
     note_rounding(draft, key, path, node);
     return true;
   }
-  if (draft_gives(draft, "units") && value_lacks_units(key, node, &draft->scene.units)) {
-    node->refused = true; /* what is wrong is the units block, and is told there */
+  if (draft_has(draft, "units") && value_lacks_units(key, node, &draft->scene.units)) {
+    node->refused = true; /* the cause is the units block, whose own error is reported */
     return false;
   }
   char allowed[VALUE_TEXT];
@@ -122,7 +122,7 @@ static bool read_key(struct draft *draft, const struct key *key, const struct pa
   return refuse(draft, path, node, allowed);
 }
 
-/* True if the section lacks the name; at the root, also if the whole section of the named key is missing. */
+/* True if the section lacks the name; at the root also if the section of the key is absent. */
 static bool is_missing(const struct place *place, const struct tree_node *section, const char *name)
 {
   const char *dot = strchr(name, '.');
@@ -147,7 +147,8 @@ static bool check_required(const struct draft *draft, const struct place *place,
 
 static bool read_section(struct draft *draft, const struct place *place, struct tree_node *node);
 
-/* The listed discs, for which there is room. One with errors is read as far as it goes, and marked. */
+/* Reads the listed discs into memory that prepare_particles has allocated. The node of a disc with errors is marked as
+ * refused. */
 static bool read_discs(struct draft *draft, const struct place *place, struct tree_node *list)
 {
   if (list->kind != TREE_LIST) return refuse(draft, place->path, list, "a list of discs");
@@ -207,7 +208,7 @@ static bool read_section(struct draft *draft, const struct place *place, struct 
   return valid;
 }
 
-/* Stores the table's defaults, read as if they stood in a case. */
+/* Stores the defaults of the table, read as the text of a case. */
 static bool read_defaults(struct draft *draft, struct tree *tree, struct status *status)
 {
   size_t count;
@@ -224,11 +225,11 @@ static bool read_defaults(struct draft *draft, struct tree *tree, struct status 
   return true;
 }
 
-/* Room for the listed discs, and whether there is a fill. */
+/* Allocates the listed discs, and detects particles.fill. */
 static bool prepare_particles(struct draft *draft, struct status *status)
 {
   const struct tree_node *list = tree_find(draft->root, "particles.discs");
-  draft->scene.particles.fill.present = draft_gives(draft, "particles.fill");
+  draft->scene.particles.fill.present = draft_has(draft, "particles.fill");
   if (!list || list->kind != TREE_LIST) return true;
   struct disc_spec *discs = memory_allocate(list->count, sizeof *discs, "the discs", status);
   draft->scene.particles.discs = discs;
@@ -236,7 +237,7 @@ static bool prepare_particles(struct draft *draft, struct status *status)
   return discs != NULL;
 }
 
-/* The file's tree with the overrides in it. One that is wrong is recorded and left out. */
+/* The tree of the file with the overrides applied. A wrong override is recorded as an error and ignored. */
 static bool read_tree(struct draft *draft, struct tree *tree, const struct yaml_text *text, char *const set[],
                       size_t set_count, struct status *status)
 {
@@ -267,7 +268,7 @@ static bool finish(struct draft *draft, struct status *status)
   return scene_fill(scene, status);
 }
 
-/* False with errors recorded or, if there are none, *status filled. */
+/* False with errors recorded, or with *status filled if there are none. */
 static bool read_draft(struct draft *draft, struct tree *tree, const struct yaml_text *text, char *const set[],
                        size_t set_count, struct status *status)
 {
@@ -280,7 +281,7 @@ static bool read_draft(struct draft *draft, struct tree *tree, const struct yaml
   return case_check(draft, status) && case_errors_total(draft->errors) == 0 && finish(draft, status);
 }
 
-/* The file to read for a path that may be a folder. */
+/* The case file of a path: the path, or case.yaml in a folder. */
 static char *find_file(const char *path, struct status *status)
 {
   struct stat about;
@@ -292,7 +293,7 @@ static char *find_file(const char *path, struct status *status)
   return NULL;
 }
 
-/* The name of a case: that of the folder of a case.yaml, or the file's without its extension. */
+/* The name of a case: the name of the folder of a case.yaml, else the name of the file without extension. */
 static char *name_case(const char *file, struct status *status)
 {
   char *resolved = realpath(file, NULL);
@@ -310,7 +311,7 @@ static char *name_case(const char *file, struct status *status)
   return copy;
 }
 
-/* All that can be read, up to one byte more than is allowed. */
+/* Reads to the end of the stream, but at most one byte more than the allowed size. */
 static bool read_stream(FILE *stream, char **bytes, size_t *size, struct status *status)
 {
   const size_t max_size = ((size_t)SCENE_FILE_MIB << 20) + 1;
@@ -357,7 +358,7 @@ static bool read_file(struct draft *draft, const char *file, char *const set[], 
   return read;
 }
 
-/* What was read becomes the caller's, unless something was wrong with it. */
+/* Moves the scene to the caller if there are no errors, else releases it and sets *status. */
 static bool conclude(struct scene *scene, struct draft *draft, bool read, const char *origin, struct status *status)
 {
   const size_t wrong = case_errors_total(draft->errors);

@@ -107,10 +107,10 @@ static const char *last_name(const char *path)
   return dot ? dot + 1 : path;
 }
 
-/* How unlike `name` in `section` a path of the table is; SIZE_MAX where it is not near. Names of the same section are
- * compared alone. For another section the whole paths and the names are, both at a price: in doubt it is a slip in the same
- * section. */
-static size_t unlikeness(const char *section, const char *name, const char *candidate)
+/* Distance of `name` in `section` to a path of the table; SIZE_MAX: too far for a suggestion. In the same section the
+ * names are compared. In other sections whole paths (plus 1) or names (plus 2), so that a slip within the section is
+ * preferred. */
+static size_t path_distance(const char *section, const char *name, const char *candidate)
 {
   const char *rest = key_within(candidate, section);
   if (rest && !strchr(rest, '.')) {
@@ -132,14 +132,14 @@ struct nearest {
   size_t distance;
 };
 
-/* Compares the first `length` characters of a path: a key, or a section or list on the way to one. */
+/* Considers the first `length` characters of a path: a key, or a section or list that contains the key. */
 static void consider(struct nearest *nearest, const char *path, size_t length)
 {
   char candidate[KEY_PATH];
   snprintf(candidate, sizeof candidate, "%.*s", (int)length, path);
   char *brackets = strstr(candidate, "[]");
-  if (brackets && brackets[2] == '\0') *brackets = '\0'; /* at the end: the list itself */
-  size_t distance = unlikeness(nearest->section, nearest->name, candidate);
+  if (brackets && brackets[2] == '\0') *brackets = '\0'; /* final brackets: the list itself */
+  size_t distance = path_distance(nearest->section, nearest->name, candidate);
   if (distance >= nearest->distance) return;
   nearest->distance = distance;
   snprintf(nearest->path, KEY_PATH, "%s", candidate);

@@ -1,11 +1,11 @@
-/* The keys of a case file: the table case_keys.def as data, and what can be asked of it. */
+/* The keys of a case file: the table case_keys.def as data, and its queries. */
 #ifndef DELBM_CASE_CASE_KEYS_H
 #define DELBM_CASE_CASE_KEYS_H
 
 #include <stdbool.h>
 #include <stddef.h>
 
-enum { KEY_PATH = 96 }; /* room for the path of any key or section in the table */
+enum { KEY_PATH = 96 }; /* maximum length of a path in the table */
 
 enum key_kind {
   KEY_TEXT,    /* const char * */
@@ -16,7 +16,7 @@ enum key_kind {
   KEY_SIZE,    /* int[2] */
   KEY_NUMBER,  /* double */
   KEY_POINT,   /* double[2] */
-  KEY_VECTOR,  /* double[2], the range being that of its length */
+  KEY_VECTOR,  /* double[2]; the range is of its length */
   KEY_BOX,     /* double[4] */
   KEY_CELLS    /* double[4], whole numbers */
 };
@@ -31,32 +31,32 @@ struct key {
   const char *help;
 };
 
-/* What a name means in a section of the table. */
+/* Role of a name in a section of the table. */
 enum key_role { ROLE_UNKNOWN, ROLE_KEY, ROLE_SECTION, ROLE_LIST };
 
 const struct key *key_table(size_t *count);
 
-/* The key of that path; NULL if there is none. */
+/* The key with this path, or NULL. */
 const struct key *key_find(const char *path);
 
-/* Name of a value of an enumeration that the key stores, and its length: 0 if there is no such value. */
+/* Name of a value of the key's enumeration, not terminated, and its length; 0 if there is no such value. */
 const char *key_choice(const struct key *key, int value, int *length);
 
 bool key_is_required(const struct key *key);
 bool key_is_automatic(const struct key *key);
-/* True if the fallback is a value, not a word about it. */
+/* True if the fallback is a value, not "required", "auto" or "derived". */
 bool key_has_default(const struct key *key);
 
-/* The part of `path` that follows the section ("" is the root), or NULL if it does not lie in it. */
+/* The part of `path` after the section ("" is the root); NULL if the path is not in the section. */
 const char *key_within(const char *path, const char *section);
 
-/* The role of `name` in a section; *key is set where it is a key. */
+/* The role of `name` in a section; sets *key if it is a key. */
 enum key_role key_role(const char *section, const char *name, const struct key **key);
 
-/* The names that a section holds, in a list. */
+/* The names in a section, as text separated by commas. */
 void key_names(const char *section, char *text, size_t size);
 
-/* The path of the key, section or list in the table that may be meant by `name` in a section. False if none is near. */
+/* The path of the key, section or list most similar to `name` in a section. False if none is similar enough. */
 bool key_nearest(const char *section, const char *name, char path[KEY_PATH]);
 
 #endif

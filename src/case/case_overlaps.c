@@ -40,7 +40,7 @@ static bool add_pair(const struct scene *scene, size_t i, size_t j, struct case_
   return depth <= 0 || add(found, i < j ? i : j, i < j ? j : i, depth, status);
 }
 
-/* What a disc takes of the x axis. */
+/* Interval of a disc on the x axis. */
 struct span {
   double left, right;
   size_t disc;
@@ -53,8 +53,8 @@ static int compare_spans(const void *a, const void *b)
   return l->disc < r->disc ? -1 : l->disc > r->disc;
 }
 
-/* Sweep and prune along x: with those that begin before a disc ends, and across a periodic side with the images of the
- * leftmost. */
+/* Sweep and prune along x. Each disc is tested against the discs that begin before its right end, and across a
+ * periodic side against the images of the leftmost ones. */
 static bool sweep(const struct scene *scene, const struct span *s, size_t n, struct case_overlaps *found,
                   struct status *status)
 {

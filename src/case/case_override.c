@@ -5,13 +5,12 @@
 #include <stdio.h>
 #include <string.h>
 
-/* One override on its way into the tree. */
 struct override {
   struct tree *tree;
   struct case_errors *errors;
   struct status *status;
-  const char *origin;      /* of the nodes made for it */
-  struct tree_node *value; /* to be put in place */
+  const char *origin;      /* origin of new nodes */
+  struct tree_node *value; /* value of the override */
 };
 
 static bool refuse(const struct override *override, const char *what)
@@ -27,7 +26,7 @@ static struct tree_node *make_node(const struct override *override, enum tree_ki
   return node;
 }
 
-/* The entry of that name in a collection that has room for one more; new ones are empty mappings. */
+/* The entry with this name in a collection with room for one more; a new entry is an empty mapping. */
 static struct tree_entry *make_entry(const struct override *override, struct tree_node *node, const char *name)
 {
   struct tree_entry *entry = tree_entry(node, name);
@@ -48,7 +47,7 @@ static struct tree_entry *make_entry(const struct override *override, struct tre
   return entry;
 }
 
-/* Follows the path from *at and puts the value at its end. */
+/* Puts the value at the path below *at. */
 static bool put(const struct override *override, struct tree_node **at, const char *path)
 {
   for (bool last = false; !last;) {

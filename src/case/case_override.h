@@ -1,16 +1,17 @@
-/* Overrides from the command line, `--set dotted.key=value`, put into the tree of a case. */
+/* Overrides of the command line, `--set dotted.key=value`, in the tree of a case. */
 #ifndef DELBM_CASE_CASE_OVERRIDE_H
 #define DELBM_CASE_CASE_OVERRIDE_H
 
 #include "case/case_errors.h"
 #include "case/case_tree.h"
 
-/* Puts "key=value" in place of what *root has there, making the sections that are missing. Sections on the way are
- * copied first, because an alias may share them. False with a reason in `errors` or, for want of memory, in *status. */
+/* Replaces or adds the value at "key=value" below *root; missing sections are created. Sections along the path are
+ * copied first, since an alias may refer to them elsewhere. False with a reason in `errors`, or in *status if memory
+ * runs out. */
 bool override_apply(struct tree *tree, struct tree_node **root, const char *text, struct case_errors *errors,
                     struct status *status);
 
-/* Writes a side given by its type alone, `left: wall`, as the mapping it is short for, `left: {type: wall}`. */
+/* Expands the short form of a side, `left: wall`, to `left: {type: wall}`. */
 bool override_expand_sides(struct tree *tree, struct tree_node **root, struct status *status);
 
 #endif

@@ -5,7 +5,7 @@
 #include <stdarg.h>
 #include <string.h>
 
-bool draft_gives(const struct draft *draft, const char *path)
+bool draft_has(const struct draft *draft, const char *path)
 {
   return tree_find(draft->root, path) != NULL;
 }
@@ -25,7 +25,7 @@ bool draft_knows(const struct draft *draft, const char *path)
 
 enum collision draft_collision(const struct draft *draft)
 {
-  if (!draft_gives(draft, "fluid.collision") && draft_gives(draft, "fluid.rates.q")) return COLLISION_MRT;
+  if (!draft_has(draft, "fluid.collision") && draft_has(draft, "fluid.rates.q")) return COLLISION_MRT;
   return draft->scene.fluid.collision;
 }
 
@@ -52,6 +52,6 @@ void draft_fill_region(const struct draft *draft, double region[4])
 {
   const int *size = draft->scene.domain.size;
   const double box[4] = {0, 0, size[0], size[1]};
-  bool given = draft_gives(draft, "particles.fill.region");
+  bool given = draft_has(draft, "particles.fill.region");
   memcpy(region, given ? draft->scene.particles.fill.region : box, sizeof box);
 }

@@ -1,23 +1,23 @@
-/* Questions to a case while it is read, for checks that concern several keys. */
+/* Queries of a draft, for checks of several keys. */
 #ifndef DELBM_CASE_CASE_QUERY_H
 #define DELBM_CASE_CASE_QUERY_H
 
 #include "case/case_draft.h"
 
-/* True if the case gives the key (with any value). */
-bool draft_gives(const struct draft *draft, const char *path);
+/* True if the case has the key (with any value). */
+bool draft_has(const struct draft *draft, const char *path);
 
-/* True if the key's value can be relied on: given as the table allows, or left to its default. */
+/* True if the value of the key is valid: allowed by the table, or the default. */
 bool draft_knows(const struct draft *draft, const char *path);
 
-/* fluid.collision as given, or what the other keys imply. */
+/* fluid.collision of the case, or its default for the other keys. */
 enum collision draft_collision(const struct draft *draft);
 
-/* Records an error at the key's place: `got` its value, or that it is missing, and what is expected instead. */
+/* Records an error at the place of the key: its value, or that it is missing, and the expected value. */
 void draft_refuse(struct draft *draft, const char *path, const char *expected, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* The region of particles.fill: as given, or the box. */
+/* particles.fill.region, by default the box. */
 void draft_fill_region(const struct draft *draft, double region[4]);
 
 #endif

@@ -109,7 +109,7 @@ struct tree_node *tree_find(struct tree_node *root, const char *path)
   return found ? node : NULL;
 }
 
-/* Text under construction, of which at most `limit` bytes are kept. */
+/* Text of at most `limit` bytes under construction. */
 struct excerpt {
   char *text;
   size_t length;
@@ -132,7 +132,7 @@ static void line_text(struct excerpt *line, const char *text)
   for (; *text && !line->cut; text++) line_byte(line, *text);
 }
 
-/* Ends the text, marking a cut, which is moved to the start of a UTF-8 character. */
+/* Ends the text; marks a cut with "..." at the start of a UTF-8 character. */
 static void line_end(struct excerpt *line)
 {
   size_t end = line->length;

@@ -8,7 +8,7 @@
 
 static const struct units none;
 
-/* Reads one key of the block, if it is there and right. */
+/* Reads one key of the block if it is present and valid. */
 static void read_own(struct draft *draft, const struct tree_node *block, const char *name)
 {
   const struct key *key;
@@ -16,7 +16,7 @@ static void read_own(struct draft *draft, const struct tree_node *block, const c
   if (entry && key_role("units", name, &key) == ROLE_KEY) value_read(key, entry->value, &none, draft);
 }
 
-/* The step that makes the physical viscosity what it is to be on the lattice. */
+/* dt at which the physical viscosity becomes units.viscosity on the lattice. */
 static double step_from_viscosity(const struct draft *draft)
 {
   const struct tree_node *given = tree_find(draft->root, "fluid.viscosity");
@@ -40,8 +40,7 @@ void case_units_read(struct draft *draft)
   if (units->dt == 0 && draft->lattice_viscosity > 0 && units->dx > 0) units->dt = step_from_viscosity(draft);
 }
 
-/* True where the block leaves dt to follow from fluid.viscosity, which is given, and is not wrong in itself, but does not
- * tell it. */
+/* True if the block needs fluid.viscosity to determine dt, and fluid.viscosity is valid but has no physical unit. */
 static bool step_is_open(const struct draft *draft)
 {
   const struct units *units = &draft->scene.units;
@@ -53,9 +52,9 @@ static bool step_is_open(const struct draft *draft)
 
 void case_units_check(struct draft *draft)
 {
-  if (!draft_gives(draft, "units") || !draft_knows(draft, "units")) return;
-  const bool dt = draft_gives(draft, "units.dt"), viscosity = draft_gives(draft, "units.viscosity");
-  if (!draft_gives(draft, "units.dx")) draft_refuse(draft, "units.dx", "the length of a cell, such as 0.1 mm");
+  if (!draft_has(draft, "units") || !draft_knows(draft, "units")) return;
+  const bool dt = draft_has(draft, "units.dt"), viscosity = draft_has(draft, "units.viscosity");
+  if (!draft_has(draft, "units.dx")) draft_refuse(draft, "units.dx", "the length of a cell, such as 0.1 mm");
   if (dt && viscosity) draft_refuse(draft, "units.viscosity", "dt or viscosity, from which dt follows, not both");
   if (!dt && !viscosity) draft_refuse(draft, "units.dt", "the duration of a step, such as 0.5 ms, or units.viscosity");
   if (!dt && viscosity && step_is_open(draft))

@@ -4,11 +4,11 @@
 
 #include "case/case_draft.h"
 
-/* Sets draft->scene.units by the block, if there is one, before other keys are read: they are scaled by it. What is wrong
- * in it is left for the reading of its keys and for case_units_check to tell. */
+/* Sets draft->scene.units from the block, before keys with units are read. Errors in the block are reported later, by
+ * the reading of its keys and by case_units_check. */
 void case_units_read(struct draft *draft);
 
-/* What the keys of the block must fulfil together. Adds to draft->errors. */
+/* Checks the keys of the block together. Adds to draft->errors. */
 void case_units_check(struct draft *draft);
 
 #endif

@@ -35,7 +35,7 @@ static bool is_integral(enum key_kind kind)
   return kind == KEY_INTEGER || kind == KEY_LONG || kind == KEY_SIZE || kind == KEY_CELLS;
 }
 
-/* True if such a number is stored as an int. */
+/* True if the value is stored as int. */
 static bool is_int(enum key_kind kind)
 {
   return kind == KEY_INTEGER || kind == KEY_SIZE;
@@ -46,7 +46,7 @@ static bool is_numeric(enum key_kind kind)
   return kind != KEY_TEXT && kind != KEY_FLAG && kind != KEY_CHOICE;
 }
 
-/* Reads "[low, high)" of the table; returns what follows it. */
+/* Reads a range of the table, "[low, high)"; returns the rest of the text. */
 static const char *parse_range(const char *text, struct range *range)
 {
   char *end;
@@ -64,8 +64,7 @@ static bool in_range(const struct range *range, double x)
   return above && below;
 }
 
-/* The end of a decimal number as YAML's core schema writes it, but neither hexadecimal nor infinite; NULL if the text
- * does not begin with one. */
+/* The end of a decimal number of YAML's core schema, finite and not hexadecimal, at the start of the text; or NULL. */
 static const char *decimal_end(const char *text)
 {
   const char *at = text + (*text == '+' || *text == '-');
@@ -87,7 +86,7 @@ static const char *decimal_end(const char *text)
   return at;
 }
 
-/* True if a decimal number, as written, has no fraction: its last digit other than 0 is not behind the point. */
+/* True if a decimal number has no fraction: its last digit other than 0 is not after the decimal point. */
 static bool is_whole(const char *text)
 {
   size_t mantissa = strcspn(text, "eE");
@@ -101,21 +100,21 @@ static bool is_whole(const char *text)
   return true;
 }
 
-/* What is wrong with a number. */
+/* Faults of a number. */
 enum fault {
   FAULT_NONE,
-  FAULT_NUMBER,        /* it is none, or not a whole one */
-  FAULT_UNIT,          /* no such unit */
-  FAULT_DIMENSION,     /* the unit is of something else */
-  FAULT_WITHOUT_UNIT,  /* it needs a unit */
-  FAULT_WITHOUT_UNITS, /* there is no units block that could convert it */
-  FAULT_NOT_WHOLE      /* once converted, nor near to one */
+  FAULT_NUMBER,        /* not a number, or not whole */
+  FAULT_UNIT,          /* unknown unit */
+  FAULT_DIMENSION,     /* unit of another dimension */
+  FAULT_WITHOUT_UNIT,  /* no unit where one is required */
+  FAULT_WITHOUT_UNITS, /* no units block for its conversion */
+  FAULT_NOT_WHOLE      /* after conversion neither whole nor close */
 };
 
-/* Largest change of a converted number by rounding to a whole one, as a part of it. One below 1e-9 is round-off. */
+/* Largest relative change of a converted number by rounding to a whole one; below 1e-9 it counts as round-off. */
 static const double max_rounding = 0.1;
 
-/* A number with a unit, in the key's own. */
+/* Converts a number with a unit to the unit of the key. */
 static enum fault convert(const struct key *key, const char *text, const struct units *units, double *number)
 {
   struct unit from, to;
@@ -131,7 +130,7 @@ static enum fault convert(const struct key *key, const char *text, const struct 
   return FAULT_NONE;
 }
 
-/* True for what says itself what the lattice stands for. */
+/* True for keys of the units block, which have physical units. */
 static bool needs_unit(const struct key *key)
 {
   const struct units none = {0};
@@ -176,7 +175,7 @@ static bool read_numbers(const struct key *key, const struct tree_node *node, co
   return key->kind != KEY_VECTOR || in_range(&range, hypot(numbers[0], numbers[1]));
 }
 
-/* The ranges of the table keep whole numbers within their types. */
+/* The ranges of the table ensure that whole numbers fit their types. */
 static void store_numbers(const struct key *key, const double *numbers, unsigned char *field)
 {
   for (size_t i = 0; i < components(key->kind); i++) {
@@ -201,13 +200,13 @@ static bool is_null(const struct tree_node *node)
   return false;
 }
 
-/* The capital of a small letter, whatever the locale. */
+/* ASCII upper case, independent of the locale. */
 static char capital(char letter)
 {
   return (char)(letter - 'a' + 'A');
 }
 
-/* True if the text is the word in lower case, in upper case, or with a capital: the spellings of YAML. */
+/* True if the text is the word in one of the spellings of YAML: lower case, upper case, capitalised. */
 static bool is_word(const char *text, const char *word)
 {
   if (strcmp(text, word) == 0) return true;
@@ -217,7 +216,7 @@ static bool is_word(const char *text, const char *word)
   return (text[k] == '\0' && word[k] == '\0') || strcmp(text + 1, word + 1) == 0;
 }
 
-/* The words for truth values are those of YAML 1.1. */
+/* Truth values of YAML 1.1. */
 static bool read_flag(const struct tree_node *node, unsigned char *field)
 {
   static const char *const words[][2] = {{"false", "true"}, {"no", "yes"}, {"off", "on"}};
@@ -264,7 +263,7 @@ bool value_read(const struct key *key, const struct tree_node *node, const struc
   return true;
 }
 
-/* The shortest of 15 to 17 digits that reads back equal. */
+/* The least of 15, 16 or 17 digits that reads back equal. */
 static void format_number(double number, char text[32])
 {
   for (int digits = 15; digits <= 17; digits++) {
@@ -381,8 +380,8 @@ void value_describe(const struct key *key, char text[VALUE_TEXT])
   if (is_numeric(key->kind)) describe_range(&phrase, key);
 }
 
-/* The first number of the node, or of its list, that has a fault or, if none has, the last with a unit: its value in the
- * key's unit, and its unit as written. */
+/* Value (in the unit of the key) and unit (as written) of the first number of the node with a fault; without a fault,
+ * of the last number with a unit. */
 static enum fault find_fault(const struct key *key, const struct tree_node *node, const struct units *units,
                              double *number, const char **unit)
 {
@@ -401,7 +400,7 @@ static enum fault find_fault(const struct key *key, const struct tree_node *node
   return fault;
 }
 
-/* A number of the key's unit in one as written, such as " ms". */
+/* Converts a number from the unit of the key to a unit as written, such as " ms". */
 static double in_unit(const struct key *key, double number, const char *unit, const struct units *units)
 {
   struct unit from, to;
@@ -409,7 +408,7 @@ static double in_unit(const struct key *key, double number, const char *unit, co
   return known ? unit_convert(number, &from, &to) : NAN;
 }
 
-/* The whole numbers beside one that is none, in the unit that it has; not 0, which has a meaning of its own. */
+/* The nearest whole numbers, converted to the unit of the value; not 0, which has a special meaning. */
 static void say_nearest(struct phrase *phrase, const struct key *key, double number, const char *unit,
                         const struct units *units)
 {
@@ -439,7 +438,7 @@ double value_rounding(const struct key *key, const struct tree_node *node, const
   return number;
 }
 
-/* "cells/step or m/s"; a number alone if the key has no such unit. */
+/* The allowed units: "cells/step or m/s". */
 static void say_units(struct phrase *phrase, const struct key *key)
 {
   const struct units none = {0};

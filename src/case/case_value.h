@@ -8,30 +8,29 @@
 
 enum { VALUE_TEXT = 256 };
 
-/* Reads a node as the key's value into `owner` (struct draft or disc_draft). A number with a unit is converted to the
- * key's own, and rounded where that must be whole, if that changes it by no more than a tenth. False, with nothing stored, if it is not what the key allows. A text stays in the tree; `auto` is stored as
- * zero. */
+/* Reads a node as the value of the key into `owner` (struct draft or disc_draft). A number with a unit is converted to
+ * the unit of the key, and rounded where the key is whole, if this changes it by at most a tenth. False, with nothing
+ * stored, if the key does not allow the value. A text is not copied from the tree; `auto` is stored as zero. */
 bool value_read(const struct key *key, const struct tree_node *node, const struct units *units, void *owner);
 
 /* Reads a number with a physical unit. */
 bool value_quantity(const struct tree_node *node, double *number, struct unit *unit);
 
-/* Writes the value in `owner` as it would be written in a case; texts excepted. Numbers are as short
- * as reads back equal. */
+/* Formats the value in `owner` as in a case; not for texts. Numbers have the fewest digits that read back equal. */
 void value_format(const struct key *key, const void *owner, char text[VALUE_TEXT]);
 
-/* Says what the key allows: "a number > 0 and <= 10". */
+/* Describes the allowed values: "a number > 0 and <= 10". */
 void value_describe(const struct key *key, char text[VALUE_TEXT]);
 
-/* True if a node was refused only because its units cannot be converted: what a cell and a step are is not known. */
+/* True if a node was refused only because the units block does not determine the size of a cell or a step. */
 bool value_lacks_units(const struct key *key, const struct tree_node *node, const struct units *units);
 
-/* What a number that value_read has rounded was in the key's own unit before, with words on it: "1.05 ms is 2.1 steps;
- * rounded to 2, which is 1 ms". 0 for one that was not rounded. */
+/* The number before value_read rounded it, in the unit of the key, and a text for a note: "1.05 ms is 2.1 steps;
+ * rounded to 2, which is 1 ms". 0 if it was not rounded. */
 double value_rounding(const struct key *key, const struct tree_node *node, const struct units *units,
                       char text[VALUE_TEXT]);
 
-/* Says what is expected in place of a node that value_read has refused, its unit being looked at first. */
+/* Describes the expected value in place of a node that value_read has refused; a wrong unit first. */
 void value_expect(const struct key *key, const struct tree_node *node, const struct units *units,
                   char text[VALUE_TEXT]);
 

@@ -8,13 +8,13 @@
 #include <string.h>
 #include <zlib.h>
 
-/* A draft with the values of a scene, whose texts and discs it shares. */
+/* A draft with the values of a scene; texts and discs are not copied. */
 static struct draft draft_from_scene(const struct scene *scene)
 {
   return (struct draft){.scene = *scene, .title = scene->title ? scene->title : "", .kernel = scene->fluid.kernel};
 }
 
-/* True for keys that say nothing in this scene, or what another key already says. */
+/* True for keys without effect in this scene, or implied by another key. */
 static bool is_idle(const struct key *key, const struct scene *scene)
 {
   if (strcmp(key->path, "units.viscosity") == 0) return true;
@@ -30,14 +30,14 @@ static bool is_idle(const struct key *key, const struct scene *scene)
   return false;
 }
 
-/* True for keys that are left out where they have their default: those of discs, and the velocities of sides, which
- * not every type of side may have. */
+/* True for keys that are not written at their default: keys of discs, and velocities of sides, which some types of side
+ * do not allow. */
 static bool is_optional(const struct key *key)
 {
   return key_within(key->path, "particles.discs[]") || (key_within(key->path, "domain") && key->kind == KEY_VECTOR);
 }
 
-/* The code point at *text, which moves past it. The text is UTF-8, as libyaml has made sure. */
+/* Reads the code point at *text and advances *text. The text is valid UTF-8, checked by libyaml. */
 static unsigned long next_character(const char **text)
 {
   const unsigned char *at = (const unsigned char *)*text;
@@ -48,7 +48,7 @@ static unsigned long next_character(const char **text)
   return character;
 }
 
-/* True for what YAML does not take as it stands between double quotes, or takes as the end of a line. */
+/* True for characters that YAML refuses between double quotes, or reads as the end of a line. */
 static bool needs_escape(unsigned long character)
 {
   bool control = character < 0x20 || (character >= 0x7F && character < 0xA0);
@@ -94,14 +94,14 @@ static void write_line(const struct key *key, const char *indent, const char *na
   fputc('\n', file);
 }
 
-/* A section of the table: its keys stand together. */
+/* A section of the table, consecutive keys. */
 struct section {
   const struct key *keys;
   size_t count;
   char path[KEY_PATH];
 };
 
-/* Writes the section as a flow mapping after `before`; nothing if every key is left out. */
+/* Writes the section as a flow mapping after `before`; writes nothing if no key is to be written. */
 static void write_flow(const struct section *section, const struct scene *scene, const void *owner, const char *before,
                        FILE *file)
 {
@@ -136,7 +136,7 @@ static struct section section_of(const struct key *first, const struct key *end)
   return section;
 }
 
-/* Writes the key, or the section within a section that starts with it; returns how many rows that took. */
+/* Writes the key, or the inner section that starts with it; returns the number of rows of the table. */
 static size_t write_rows(const struct draft *draft, const struct key *key, const struct key *end, FILE *file)
 {
   const char *dot = strchr(key->path, '.');
@@ -155,7 +155,7 @@ static size_t write_rows(const struct draft *draft, const struct key *key, const
   return section.count;
 }
 
-/* True for the sections that decide what the numbers of a run are and mean. */
+/* True for sections in the fingerprint. */
 static bool is_compared(const struct key *key)
 {
   static const char *const sections[] = {"domain", "fluid", "units", "coupling", "particles", "contact"};
@@ -164,7 +164,7 @@ static bool is_compared(const struct key *key)
   return false;
 }
 
-/* The case, or those of its sections alone. */
+/* Writes all sections, or the sections of the fingerprint. */
 static void write_case(const struct scene *scene, bool compared_alone, FILE *file)
 {
   const struct draft draft = draft_from_scene(scene);
@@ -200,7 +200,7 @@ static ssize_t add_to_sum(void *cookie, const char *bytes, size_t count)
 bool case_fingerprint(const struct scene *scene, uint32_t *fingerprint, struct status *status)
 {
   *fingerprint = 0;
-  /* not open_memstream, which loses what it has no memory for and says so to nobody */
+  /* not open_memstream, which loses output without an error when memory runs out */
   FILE *stream = fopencookie(fingerprint, "w", (cookie_io_functions_t){.write = add_to_sum});
   if (stream) write_case(scene, true, stream);
   const bool failed = !stream || ferror(stream);

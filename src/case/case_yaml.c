@@ -44,7 +44,7 @@ static void refuse_node(const struct reader *reader, struct tree_node *node, con
 
 static bool refuse_syntax(const struct reader *reader, const yaml_parser_t *parser)
 {
-  if (parser->error == YAML_MEMORY_ERROR || !parser->problem) /* libyaml does not always say that it has no memory */
+  if (parser->error == YAML_MEMORY_ERROR || !parser->problem) /* libyaml may omit the error for lack of memory */
     return status_fail(reader->status, DELBM_FAILED, "out of memory reading YAML");
   char what[256];
   snprintf(what, sizeof what, "not valid YAML: %s%s%s", parser->problem, parser->context ? ", " : "",
@@ -94,8 +94,7 @@ static bool check_event(const struct reader *reader, struct limits *limits, cons
   return true;
 }
 
-/* libyaml takes quadratic time in the depth and in the number of anchors, so they are checked, event by event, before
- * it loads the document. */
+/* Limits depth and number of anchors before libyaml loads the document: its time is quadratic in both. */
 static bool check_limits(const struct reader *reader)
 {
   yaml_parser_t parser;
@@ -141,7 +140,7 @@ static void refuse_twice(const struct reader *reader, const struct tree_node *fi
     case_errors_add(reader->errors, "%s: key %s given twice", place, name);
 }
 
-/* Refuses keys given twice. False if the mapping cannot be used: a key is no scalar, or there is no memory. */
+/* Refuses repeated keys. False if a key is not a scalar, or memory runs out. */
 static bool check_mapping(const struct reader *reader, const struct tree_node *mapping)
 {
   struct tree_node **keys = tree_allocate(reader->tree, mapping->count, sizeof *keys, reader->status);
@@ -203,7 +202,7 @@ static bool has_tag(const yaml_node_t *node)
   return strcmp(tag, YAML_STR_TAG) != 0 && strcmp(tag, YAML_SEQ_TAG) != 0 && strcmp(tag, YAML_MAP_TAG) != 0;
 }
 
-/* False for want of memory. */
+/* False if memory runs out. */
 static bool read_node(const struct reader *reader, struct tree_node *node, const yaml_node_t *source,
                       struct tree_node *all)
 {
@@ -213,8 +212,8 @@ static bool read_node(const struct reader *reader, struct tree_node *node, const
   return read_mapping(reader, node, source, all);
 }
 
-/* One node of the tree for each of the document: shared nodes and cycles stay what they are. The nodes are in document
- * order, and so are the errors. */
+/* One node of the tree for each node of the document, so that aliases and cycles are preserved. Nodes, and hence
+ * errors, are in the order of the document. */
 static struct tree_node *read_document(const struct reader *reader, const yaml_document_t *document)
 {
   const yaml_node_t *source = document->nodes.start;

@@ -1,4 +1,4 @@
-/* YAML text to a tree, by libyaml. */
+/* Parsing of YAML text to a tree, by libyaml. */
 #ifndef DELBM_CASE_CASE_YAML_H
 #define DELBM_CASE_CASE_YAML_H
 
@@ -6,19 +6,19 @@
 #include "case/case_tree.h"
 
 enum {
-  YAML_DEPTH = 32,   /* deepest nesting taken */
-  YAML_ANCHORS = 256 /* most anchors taken in one document */
+  YAML_DEPTH = 32,   /* maximum depth of nesting */
+  YAML_ANCHORS = 256 /* maximum number of anchors */
 };
 
 struct yaml_text {
-  const char *origin; /* of its nodes; must outlive the tree */
-  bool with_lines;    /* places carry line and column */
+  const char *origin; /* origin of the nodes; must outlive the tree */
+  bool with_lines;    /* record line and column of nodes */
   const char *bytes;
   size_t size;
 };
 
-/* Reads one document. NULL if it is not valid YAML or holds what a case cannot, with each reason in `errors`; or for
- * want of memory, with *status filled and `errors` as it was. */
+/* Parses one document. NULL with reasons in `errors` if it is not valid YAML, or contains what no case may contain;
+ * NULL with *status filled and `errors` unchanged if memory runs out. */
 struct tree_node *yaml_read(struct tree *tree, const struct yaml_text *text, struct case_errors *errors,
                             struct status *status);
 

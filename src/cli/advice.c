@@ -81,14 +81,15 @@ static void advise_form_inside(const struct scene *scene)
     const double rim = disc->radius * fabs(disc->spin);
     free_discs += disc->motion == DISC_FREE;
     if (disc->motion == DISC_FREE || !(owen ? rim > 0 || is_under_moving_side(scene, disc) : rim > min_rim)) continue;
-    printf(
-        "  note: with form: %s the fluid inside disc %zu, which %s, gains until the run diverges; form: midpoint does "
-        "not (bench/STABILITY.md)\n",
-        owen ? "owen" : "unified", i, rim > 0 ? "is made to spin" : "a moving side passes over");
+    printf("  note: with form: %s the fluid inside disc %zu, which %s, accelerates until the run diverges; form: "
+           "midpoint does "
+           "not (bench/STABILITY.md)\n",
+           owen ? "owen" : "unified", i, rim > 0 ? "is made to spin" : "a moving side passes over");
     return;
   }
   if (owen && free_discs > 1 && scene->run.steps > 10000)
-    printf("  note: with form: owen the fluid inside discs that shake each other gains until the run diverges (a pile "
+    printf("  note: with form: owen the fluid inside discs that shake each other accelerates until the run diverges (a "
+           "pile "
            "of 150: in 31,000 steps); form: midpoint does not (bench/STABILITY.md)\n");
 }
 
@@ -100,8 +101,8 @@ static void advise_substeps(const struct scene *scene)
   freely.contact.substeps = 0;
   const int needed = substeps_by_lens(&freely);
   if (needed > scene->contact.substeps)
-    printf("  note: %d sub-steps are fewer than the %d that contacts may need: they damp otherwise than they should, "
-           "and give way further; substeps: auto does not (bench/STABILITY.md)\n",
+    printf("  note: %d sub-steps are fewer than the %d that contacts may need: damping and overlap of contacts are "
+           "inaccurate; better: substeps: auto (bench/STABILITY.md)\n",
            scene->contact.substeps, needed);
 }
 
@@ -139,10 +140,10 @@ static void advise_fall(const struct scene *scene, const double weight[2])
   }
   const double max_fall = fmax(fall[0], fall[1]);
   if (max_fall > 0.05 && !has_prescribed_discs(scene))
-    printf(
-        "  note: nothing holds the box along its periodic sides against the weight of its discs: within the run all of "
-        "it may gain %.2g cells/step; fluid.force: [%.9g, %.9g] holds it\n",
-        max_fall, fall[0] > 0 ? 0 - weight[0] / cells : force[0], fall[1] > 0 ? 0 - weight[1] / cells : force[1]);
+    printf("  note: no force balances the weight of the discs along the periodic sides: within the run all fluid and "
+           "discs "
+           "may gain %.2g cells/step; fluid.force: [%.9g, %.9g] balances the weight\n",
+           max_fall, fall[0] > 0 ? 0 - weight[0] / cells : force[0], fall[1] > 0 ? 0 - weight[1] / cells : force[1]);
 }
 
 void print_advice(const struct scene *scene)

@@ -125,22 +125,20 @@ static void advise_overlap(const struct scene *scene, const struct sediment *s)
     before = disc;
   }
   if (worst <= (alone ? max_alone : max_in_pile)) return;
-  printf(
-      "  note: at rest %s overlap by about %.2g %% of their radius under %s; better: contact.stiffness >= %.2g, which "
-      "gives %g %%\n",
-      alone ? "discs and the side that they lie on" : "the lowest discs", 100 * worst,
-      alone ? "their weight" : "the weight of the pile", stiffness, 100 * wanted_overlap);
+  printf("  note: at rest %s overlap by about %.2g %% of their radius under %s; better: contact.stiffness >= %.2g, for "
+         "%g %%\n",
+         alone ? "discs and the side that they lie on" : "the lowest discs", 100 * worst,
+         alone ? "their weight" : "the weight of the pile", stiffness, 100 * wanted_overlap);
 }
 
 static void advise_pile(const struct scene *scene, const struct sediment *s)
 {
   if (layers(scene, s) <= 1) return;
-  printf("  note: %zu discs come to lie in a pile, about %.2g layers high; in two dimensions fluid has no way between "
-         "discs "
-         "that touch, and goes on carrying part of their weight (about half in a pile of 20): contact forces in it are "
-         "too "
-         "small; better: loads from (density - 1) particles.gravity\n",
-         s->count, layers(scene, s));
+  printf(
+      "  note: %zu discs come to lie in a pile, about %.2g layers high; in two dimensions fluid cannot flow between "
+      "discs that touch, and its pressure bears part of their weight (about half in a pile of 20): contact forces in "
+      "the pile are too small; better: loads from (density - 1) particles.gravity\n",
+      s->count, layers(scene, s));
 }
 
 void advise_rest(const struct scene *scene)

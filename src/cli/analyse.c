@@ -39,16 +39,17 @@ const struct command command_analyse = {
         "Reports what a run's discs did, from case.yaml, particles.csv and run.json in DIR, one figure a line:\n"
         "\n"
         "  one free disc        terminal speed, drag, Reynolds and Strouhal numbers             body.*\n"
-        "  held discs           drag, lift and torque, mean of each, Reynolds number            body.*\n"
+        "  fixed, driven discs  drag, lift and torque, mean of each, Reynolds number            body.*\n"
         "  two discs settling   times and speeds of drafting, kissing and tumbling              pair.*\n"
         "  many discs settling  interface, sediment, concentration, mixing                      settling.*\n"
         "\n"
         "Speeds of body.* are relative to the fluid: to the stream of an inlet, to fluid at rest where walls close "
         "the\n"
         "box, else to the mean velocity of the fluid at the end of the run. The terminal speed is the mean over the\n"
-        "last stretch of five diameters or more whose thirds agree within 0.5 %. Where there is no terminal speed or "
+        "last part of the way, of five diameters or more, whose thirds agree within 0.5 %. Where there is no terminal "
+        "speed or "
         "no\n"
-        "sediment yet, or where forces on held discs are not steady, a line that begins with # says so.",
+        "sediment yet, or where forces on fixed or driven discs are not steady, a line that begins with # says so.",
     .options = {{"json", "FILE", "also writes the figures, and the series of settling, to FILE", .kind = OPTION_TEXT,
                  .target = offsetof(struct arguments, json)},
                 {"tables", NULL,

@@ -42,7 +42,7 @@ static bool copy_members(FILE *members, FILE *json, struct status *status)
   return !ferror(members) || status_fail(status, DELBM_IO, "cannot read the figures back: %s", strerror(errno));
 }
 
-/* Runs a benchmark; its members reach the file when it has ended. */
+/* Runs a benchmark. Its figures go to a temporary file first, so that a failed benchmark leaves valid JSON. */
 static bool run_kept(const struct bench *bench, bool quick, FILE *json, struct status *status)
 {
   struct bench_report report = {.quick = quick, .json = tmpfile()};
@@ -52,7 +52,7 @@ static bool run_kept(const struct bench *bench, bool quick, FILE *json, struct s
   return ok;
 }
 
-/* Of a benchmark that failed the file has the message. */
+/* Writes one member of the JSON object: the figures or, after a failure, the message. */
 static bool run_one(const struct bench *bench, bool quick, FILE *json, bool first, struct status *status)
 {
   printf("%s== %s: %s\n", first ? "" : "\n", bench->name, bench->question);
@@ -67,7 +67,7 @@ static bool run_one(const struct bench *bench, bool quick, FILE *json, bool firs
   return ok;
 }
 
-/* Runs the chosen benchmarks to the last, also where one fails; returns the exit code of the first that failed. */
+/* Runs all chosen benchmarks, also after a failure; returns the exit code of the first failure. */
 static int run_chosen(const bool chosen[], bool quick, FILE *json)
 {
   const struct bench *bench;
@@ -88,7 +88,7 @@ static int run_chosen(const bool chosen[], bool quick, FILE *json)
   return code;
 }
 
-/* Which benchmarks the names mean; without a name all. */
+/* Marks the benchmarks with these names, or all without a name. */
 static bool choose(char **names, int count, bool chosen[])
 {
   const struct bench *bench;
@@ -127,8 +127,7 @@ const struct command command_bench = {
     .operand = OPERAND_WORDS,
     .about = "Measures on this machine, with OMP_NUM_THREADS threads. Without a NAME all benchmarks run: half an hour, "
              "or about\n"
-             "a minute with --quick. Each verifies what it measures; where that fails the others still run, and the "
-             "exit\n"
+             "a minute with --quick. Each verifies its results; after a failure the others still run, and the exit\n"
              "code is 1.",
     .options = {{"list", NULL, "the benchmarks and the kernels, and which kernels this machine runs",
                  .kind = OPTION_PRINT, .print = print_list},

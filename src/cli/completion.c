@@ -1,5 +1,5 @@
-/* Completion of command lines, written from the tables of commands, options and keys: a script for bash, which zsh reads
- * too, by its own emulation. Where nothing is offered (CASE, DIR, files) the shell completes names of files. */
+/* Completion of command lines, from the tables of commands, options and keys: a script for bash, and for zsh by its
+ * emulation of bash. Without a candidate (CASE, DIR, files) the shell completes file names. */
 #include "case/case_keys.h"
 #include "cli/commands.h"
 #include "cli/report.h"
@@ -24,7 +24,7 @@ static void print_options(const struct command *const *all)
   }
 }
 
-/* "key=", the place in a list being that of its first element. */
+/* Prints "key=" of every key; in lists with index 0. */
 static void print_keys(void)
 {
   size_t count;
@@ -77,7 +77,7 @@ static int complete(struct arguments *arguments)
 
 const struct command command_completion = {
     .name = "completion",
-    .purpose = "print what completes command lines in bash or zsh",
+    .purpose = "print a completion script for bash or zsh",
     .operand_name = "bash|zsh",
     .operand = OPERAND_WORD,
     .about = "Prints a script that makes the shell complete commands, options and the keys of --set. For this shell:\n"

@@ -20,7 +20,7 @@
 
 enum { CHOICE = 32 };
 
-/* A value of an enumeration, as it is named in a case. */
+/* Name of a value of an enumeration in a case. */
 static const char *choice_of(const char *path, unsigned value, char text[CHOICE])
 {
   int length;
@@ -41,7 +41,7 @@ static void print_box(const struct scene *scene)
   printf("\n");
 }
 
-/* A number in the unit that it has on the lattice, in SI. */
+/* Converts a number with a lattice unit to SI. */
 static double in_si(const struct scene *scene, double number, const char *unit)
 {
   struct unit from;
@@ -61,7 +61,7 @@ static void print_units(const struct scene *scene)
   printf("\n");
 }
 
-/* What to change so that the lattice viscosity becomes `wanted`, the physical one staying as it is. */
+/* Prints keys and values for a lattice viscosity of `wanted` at the same physical viscosity. */
 static void advise_viscosity(const struct scene *scene, double wanted)
 {
   const bool more = wanted > scene->fluid.viscosity;
@@ -94,14 +94,14 @@ static void print_fluid(const struct scene *scene)
     advise_viscosity(scene, (1.5 - 0.5) / 3);
   }
   if (tau < estimate_min_tau) {
-    printf("  note: tau below %g, close to 1/2: hardly any damping of what goes wrong, and no collision operator is "
+    printf("  note: tau below %g, close to 1/2: errors are hardly damped, and no collision operator is "
            "reliable above Mach 0.2 (bench/STABILITY.md); better: ",
            estimate_min_tau);
     advise_viscosity(scene, (estimate_min_tau - 0.5) / 3);
   }
 }
 
-/* What to change where the speed is above the advised one. */
+/* Prints a note with keys and values if the speed is above the advised maximum. */
 static void advise_speed(const struct scene *scene, const struct estimate *fastest)
 {
   const double advised = scene_advised_speed;
@@ -132,7 +132,7 @@ static void advise_cells(const struct scene *scene, double speed)
   printf("\n");
 }
 
-/* The length of the Reynolds number: the largest disc or, without any, the width of what flows. */
+/* Length in the Reynolds number: largest diameter or, without discs, width of the flow. */
 static double reynolds_length(const struct scene *scene)
 {
   const int *size = scene->domain.size;
@@ -154,7 +154,7 @@ static void print_force(const struct scene *scene)
   if (hypot(along[0], along[1]) > 0)
     printf(": drives the fluid to about %.3g cells a step by the end of the run\n", hypot(along[0], along[1]));
   else
-    printf(": along no periodic axis, so what it does depends on the sides\n");
+    printf(": along no periodic axis; its effect depends on the sides\n");
 }
 
 static void print_speeds(const struct scene *scene)
@@ -163,7 +163,7 @@ static void print_speeds(const struct scene *scene)
   const double length = reynolds_length(scene);
   print_force(scene);
   if (fastest.speed == 0) {
-    printf("speed        none is given by the case: no Reynolds number\n");
+    printf("speed        not determined by the case: no Reynolds number\n");
     return;
   }
   printf("speed        about %.3g cells a step (%s): Mach %.3g, Reynolds number %.3g over %g cells\n", fastest.speed,
@@ -194,7 +194,7 @@ static void print_discs(const struct scene *scene)
          choice_of("coupling.solve", scene->coupling.solve, solve));
 }
 
-/* Overlaps at the start, which contacts push apart: the first few, and how many more. */
+/* Prints the first few initial overlaps, and the number of further ones. */
 static bool print_overlaps(const struct scene *scene, struct status *status)
 {
   enum { SHOWN = 5 };
@@ -232,9 +232,8 @@ static void print_contacts(const struct scene *scene, const struct stages *stage
            scene->contact.steps_per_contact, substeps_by_lens(scene));
   else if (substeps_by_lens(scene) > 1)
     printf("sub-steps    1: areas by cells are known once a step\n"
-           "  note: by lens contacts this stiff would take up to %d; with one they damp otherwise than they should, "
-           "and give way "
-           "further; use contact.area: lens, or a smaller contact.stiffness\n",
+           "  note: with contact.area: lens, contacts of this stiffness take up to %d; with one, their damping and "
+           "overlap are inaccurate; better: contact.area: lens, or a smaller contact.stiffness\n",
            substeps_by_lens(scene));
   else
     printf("sub-steps    1: a contact lasts more than %g steps\n", scene->contact.steps_per_contact);
@@ -255,7 +254,7 @@ static void print_plan(const struct scene *scene)
            tuning.best.width);
 }
 
-/* Velocities of a frame and values of a snapshot; and what libpng and HDF5 were seen to take. */
+/* Memory for output: velocities of a frame, values of a snapshot, and measured 8 MiB of libpng and 12 MiB of HDF5. */
 static double bytes_of_output(const struct scene *scene)
 {
   enum { VALUES = 7 };
@@ -301,7 +300,7 @@ static void print_stages(const struct scene *scene, const struct stages *stages)
   printf("  contact    %s\n", stages->pairs && stages->walls ? "pairs and sides"
                               : stages->pairs                ? "pairs; no sides: the box is periodic"
                               : stages->walls                ? "sides; no pairs: one disc"
-                                                             : "left out: nothing can meet");
+                                                             : "left out: no contact is possible");
   printf("  boundary   %s\n", scene_is_periodic(scene, 0) && scene_is_periodic(scene, 1)
                                   ? "periodic images, with the sweep of each row"
                                   : "with the sweep of each row");
@@ -316,7 +315,7 @@ static int print_case(struct arguments *arguments)
   const struct stages stages = stages_of(scene);
   const struct sweep_kernel *kernel = sweep_find(scene->fluid.kernel, scene->fluid.precision, &status);
   if (!kernel) return report_error(&status);
-  char title[TREE_TEXT]; /* whatever a case holds, a terminal is not to obey it */
+  char title[TREE_TEXT]; /* without control characters, which a terminal would execute */
   tree_show(scene->title, title);
   printf("case         %s%s%s\n", scene->name, *title ? ": " : "", title);
   print_box(scene);
@@ -343,7 +342,7 @@ const struct command command_info = {
     .purpose = "show a case and the plan of its run",
     .operand_name = "CASE",
     .operand = OPERAND_CASE,
-    .about = "Shows what a case means, without running it: relaxation, expected speeds and Reynolds numbers, contacts, "
+    .about = "Describes a case without running it: relaxation, expected speeds and Reynolds numbers, contacts, "
              "memory,\n"
              "and which stages of the step will run.",
     .options = {{"set", "key=value", "replaces a value of the case, as for `delbm run`", .kind = OPTION_SETTING},

@@ -23,7 +23,7 @@ static int print_help(void)
        "commands (each has its own --help):");
   for (const struct command *const *c = commands; *c; c++) printf("  %-11s %s\n", (*c)->name, (*c)->purpose);
   puts("\n"
-       "The number of threads is that of OMP_NUM_THREADS; it does not change results.\n"
+       "OMP_NUM_THREADS sets the number of threads; results do not depend on it.\n"
        "Exit codes: 0 done, 1 run failed (diverged), 2 usage, 3 invalid case, 4 input/output,\n"
        "129, 130 or 143 interrupted by SIGHUP, SIGINT or SIGTERM, after a checkpoint.");
   return DELBM_OK;
@@ -40,7 +40,7 @@ static int unknown_word(const char *word)
   return usage_error(NULL, "unknown %s '%s'; did you mean '%s'?", kind, word, suggestion.nearest);
 }
 
-/* Reads the case that the command line names; prints all errors found. Returns DELBM_OK or the exit code. */
+/* Reads the case of the command line; prints all its errors. Returns DELBM_OK or the exit code. */
 static int read_case(const char *path, struct arguments *arguments)
 {
   struct case_errors errors = {.notes = &arguments->notes};
@@ -89,9 +89,9 @@ static int dispatch(int argc, char **argv)
   return DELBM_OK;
 }
 
-/* A standard stream that the caller closed would give its number to the next file opened, and messages would end up in
- * that file. /dev/null opened the wrong way round takes the place: using it fails as using the closed stream would. */
-static bool hold_standard_streams(void)
+/* Opens /dev/null in place of standard streams that the caller has closed; else the next file opened would get their
+ * number and receive messages. It is opened in the opposite direction, so that access fails as on a closed stream. */
+static bool reserve_standard_streams(void)
 {
   for (int descriptor = STDIN_FILENO; descriptor <= STDERR_FILENO; descriptor++)
     if (fcntl(descriptor, F_GETFD) < 0 &&
@@ -100,7 +100,7 @@ static bool hold_standard_streams(void)
   return true;
 }
 
-/* Results that could not be written to stdout turn success into an error. */
+/* Exit code DELBM_IO in place of success if stdout could not be written. */
 static int check_stdout(int code)
 {
   errno = 0;
@@ -111,22 +111,22 @@ static int check_stdout(int code)
   return code == DELBM_OK ? DELBM_IO : code;
 }
 
-/* OpenMP lets a waiting thread spin for long, which costs everyone dear where threads outnumber idle cores. Its runtime
- * reads the limit before main begins: unless the user has set one, set it and begin again. 500 turns are a few
- * microseconds; measured on two cores, two runs of two threads then take 3 times as long as one alone, and without a
+/* Limits the time that waiting OpenMP threads spin, which is wasted if there are more threads than idle cores. The
+ * runtime reads GOMP_SPINCOUNT before main, so that the program sets it, unless the user has, and restarts. 500 turns
+ * are a few microseconds. Measured on two cores: two runs of two threads take 3 times as long as one alone, without a
  * limit 10 to 40 times. */
 static void limit_spinning(char **argv)
 {
   if (getenv("OMP_WAIT_POLICY") || getenv("GOMP_SPINCOUNT") || setenv("GOMP_SPINCOUNT", "500", 1) != 0) return;
-  execv("/proc/self/exe", argv); /* returns only if that cannot be done: then as it is */
+  execv("/proc/self/exe", argv); /* returns only on failure: continues without a limit */
 }
 
 int main(int argc, char **argv)
 {
   limit_spinning(argv);
-  if (!hold_standard_streams()) return DELBM_IO;
-  c_locale_enter();         /* should a library have set another for the process */
-  signal(SIGPIPE, SIG_IGN); /* a closed pipe is an error like any other: check_stdout reports it */
-  signal(SIGXFSZ, SIG_IGN); /* and so is a file that may not grow: the write that fails does */
+  if (!reserve_standard_streams()) return DELBM_IO;
+  c_locale_enter();         /* a library may have set another locale */
+  signal(SIGPIPE, SIG_IGN); /* a closed pipe is an error of the write, which check_stdout reports */
+  signal(SIGXFSZ, SIG_IGN); /* a file above the size limit is an error of the write */
   return check_stdout(dispatch(argc, argv));
 }

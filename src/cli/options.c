@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What getopt_long returns for row k of a table is OPTION_FIRST + k: above every character. */
+/* getopt_long returns OPTION_FIRST + k for row k of a table, above every character. */
 enum { OPTION_END = -1, OPTION_FIRST = 256 };
 
 /* "--name ARGUMENT" */
@@ -46,7 +46,7 @@ static void print_help(const struct command *command)
   if (command->notes) printf("\n%s\n", command->notes);
 }
 
-/* `word` is the option as typed, perhaps with =value. */
+/* `word`: the option as typed, with or without =value. */
 static void report_unknown_option(const char *command, const char *word, const struct option *options)
 {
   char name[WORD_LENGTH];
@@ -60,7 +60,7 @@ static void report_unknown_option(const char *command, const char *word, const s
     usage_error(command, "unknown option '%.*s'", length, word);
 }
 
-/* `option` is what getopt_long returned for the last word. */
+/* `option`: result of getopt_long for the last word. */
 static void report_misused_option(int option, char **argv, const struct option *options)
 {
   const char *word = argv[optind - 1];
@@ -90,7 +90,7 @@ static int add_setting(const char *key, const char *text, struct arguments *argu
   return DELBM_OK;
 }
 
-/* Returns DELBM_OK, or the exit code of a mistake that it has reported. */
+/* Stores the value of an option. Returns DELBM_OK, or the exit code of a reported error. */
 static int take(const struct option_row *row, const char *text, struct arguments *arguments)
 {
   void *target = (char *)arguments + row->target;
@@ -108,7 +108,7 @@ static int check_operands(const struct command *command, const struct arguments 
                      arguments->operands[1]);
 }
 
-/* The options up to the first that ends the command; returns as options_read does. */
+/* Reads options up to the first that ends the command; returns as options_read. */
 static bool read_options(const struct command *command, int argc, char **argv, struct arguments *arguments, int *code)
 {
   struct option list[OPTIONS_MAX] = {0};

@@ -7,7 +7,7 @@
 
 #include <stdlib.h>
 
-/* True if a run has the file, and not an empty one. */
+/* True if the file exists and is not empty. */
 static bool has_file(const char *directory, const char *name)
 {
   struct status ignored;
@@ -20,7 +20,7 @@ static bool has_file(const char *directory, const char *name)
   return filled;
 }
 
-/* The interface has to be found before it can be drawn. */
+/* Writes the series of settling, which the plots of interface and mixing read. */
 static bool find_interface(const struct scene *scene, const char *directory, struct status *status)
 {
   struct analysis analysis;
@@ -30,7 +30,7 @@ static bool find_interface(const struct scene *scene, const char *directory, str
   return found;
 }
 
-/* Which plots the run allows. */
+/* Marks the plots for which the run has files. */
 static bool choose(const struct scene *scene, const char *directory, bool wanted[PLOT_COUNT], struct status *status)
 {
   const bool discs = scene->particles.count > 0 && has_file(directory, "particles.csv");
@@ -38,7 +38,7 @@ static bool choose(const struct scene *scene, const char *directory, bool wanted
   wanted[PLOT_INTERFACE] = wanted[PLOT_MIXING] = discs && settling_applies(scene);
   wanted[PLOT_STAGES] = has_file(directory, "run.json");
   return discs || wanted[PLOT_STAGES] ||
-         status_fail(status, DELBM_IO, "nothing to plot: %s holds no results", directory);
+         status_fail(status, DELBM_IO, "nothing to plot: %s contains no results", directory);
 }
 
 static bool write_script(const struct arguments *arguments, enum plot plot, struct status *status)

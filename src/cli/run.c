@@ -28,7 +28,7 @@ static bool is_same_file(const char *a, const char *b)
          first.st_ino == second.st_ino;
 }
 
-/* True if the run would write its case.yaml over the case (a file, or a folder with case.yaml) that the user wrote. */
+/* True if the case.yaml of the run would replace the user's case (a file, or a folder with case.yaml). */
 static bool would_overwrite(const char *path, const char *directory)
 {
   struct status ignored;
@@ -67,7 +67,7 @@ const struct command command_run = {
     .purpose = "simulate a case",
     .operand_name = "CASE",
     .operand = OPERAND_CASE,
-    .about = "Simulates a case: a YAML file, or a folder that holds case.yaml.",
+    .about = "Simulates a case: a YAML file, or a folder with case.yaml.",
     .options = {{"out", "DIR",
                  "folder for the results (out/NAME, NAME being the case's folder or file);\n"
                  "files of an earlier run in it are replaced",
@@ -81,7 +81,7 @@ const struct command command_run = {
                 {"quiet", NULL, "no progress on stderr, only warnings and errors", .kind = OPTION_FLAG,
                  .target = offsetof(struct arguments, quiet)},
                 {"help", NULL, "this text", .kind = OPTION_HELP},
-                {"help-keys", NULL, "every key of a case, what it means and what it may be", .kind = OPTION_PRINT,
+                {"help-keys", NULL, "every key of a case, with its meaning and allowed values", .kind = OPTION_PRINT,
                  .print = print_keys}},
     .notes = "DIR receives case.yaml (the case as run), particles.csv, fields.h5, frames/*.png and run.json. The last "
              "line\n"

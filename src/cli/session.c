@@ -8,7 +8,7 @@
 #include <math.h>
 #include <signal.h>
 
-/* The signal that asked the run to end, read between chunks of steps. A signal handler has no other way to speak. */
+/* Set by the signal handler, read between chunks of steps. */
 static volatile sig_atomic_t stop_requested;
 
 struct session_state {
@@ -17,18 +17,19 @@ struct session_state {
   struct simulation *simulation;
   struct recorder *recorder;
   struct progress progress;
-  enum outcome outcome; /* with the reason in status when it is not DONE */
+  enum outcome outcome; /* other than DONE: reason in status */
   struct status status;
 };
 
-/* The first of several decides the exit code. */
+/* The first of several signals determines the exit code. */
 static void request_stop(int signal_number)
 {
   if (!stop_requested) stop_requested = signal_number;
 }
 
-/* The first signal asks the run to end in order, a second of its kind ends the program: but for SIGHUP, which a terminal that
- * closes may send twice, once itself and once by its shell. Where SIGHUP is ignored (nohup) it stays so. */
+/* The first SIGINT or SIGTERM ends the run after a checkpoint, a second one ends the program at once. SIGHUP never
+ * ends the program at once, since a closing terminal may send it twice (itself and by its shell); where it is ignored
+ * (nohup), it stays ignored. */
 static void listen_to_signals(void)
 {
   struct sigaction action = {.sa_handler = request_stop, .sa_flags = (int)SA_RESETHAND | SA_RESTART}, before;
@@ -39,13 +40,13 @@ static void listen_to_signals(void)
   if (sigaction(SIGHUP, NULL, &before) == 0 && before.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, NULL);
 }
 
-/* 128 + n for signal n, as a shell has it for a program that a signal has ended. */
+/* 128 + n for signal n, as shells report it. */
 static enum delbm_code code_of_signal(int signal_number)
 {
   return signal_number == SIGHUP ? DELBM_HUNG_UP : signal_number == SIGTERM ? DELBM_TERMINATED : DELBM_INTERRUPTED;
 }
 
-/* Tells a diverged simulation from a full disk or memory. */
+/* Sets the outcome: divergence, or failure of a file or of memory. */
 static bool fail(struct session_state *run)
 {
   struct status ignored;
@@ -68,8 +69,7 @@ static bool advance(struct session_state *run, int64_t steps)
   return false;
 }
 
-/* Nothing but a checkpoint is written, and that before what is due at this step: the files stay the beginning of those of
- * a run that goes on. */
+/* Writes a checkpoint and no other output of this step: the files are then a prefix of the files of an unbroken run. */
 static bool interrupt(struct session_state *run)
 {
   if (!recorder_checkpoint(run->recorder, run->simulation, &run->status)) return fail(run);
@@ -79,7 +79,7 @@ static bool interrupt(struct session_state *run)
                      simulation_step(run->simulation), run->scene->run.steps, run->directory);
 }
 
-/* Steps that take about as long as a person will wait for the bar or for an interrupt; results do not depend on it. */
+/* Number of steps that take about 0.2 s, the interval of progress bar and signals. Results do not depend on it. */
 static int64_t next_chunk(int64_t chunk, int64_t steps, double seconds)
 {
   const double wanted = 0.2;
@@ -105,7 +105,7 @@ static bool run_steps(struct session_state *run)
   }
 }
 
-/* An error after the steps: it decides the outcome unless an earlier one did. */
+/* Records a failure after the last step, unless an earlier one is recorded. */
 static void note_failure(struct session_state *run, const struct status *status)
 {
   if (run->outcome != OUTCOME_DONE) return;
@@ -113,7 +113,7 @@ static void note_failure(struct session_state *run, const struct status *status)
   run->status = *status;
 }
 
-/* Why the run ended, in words. */
+/* Reason of the end of the run, for run.json. */
 static const char *reason_of(const struct session_state *run)
 {
   if (run->outcome == OUTCOME_DONE) return "all of run.steps are done";
@@ -125,7 +125,7 @@ static const char *reason_of(const struct session_state *run)
 
 enum { WARNING = 256 };
 
-/* What a person must know who uses the results: "" if nothing. */
+/* Warning on the accuracy of the results; "" if there is none. */
 static void warn(const struct simulation_report *report, char warning[WARNING])
 {
   const double advised = sqrt(3) * scene_advised_speed;
@@ -137,7 +137,7 @@ static void warn(const struct simulation_report *report, char warning[WARNING])
         report->max_mach, advised, scene_advised_speed);
 }
 
-/* Closes the files and tells how the run ended: in run.json, on stdout and on stderr. */
+/* Closes the files and reports the outcome in run.json, on stdout and on stderr. */
 static void conclude(struct session_state *run)
 {
   struct status status;
@@ -160,7 +160,7 @@ static void conclude(struct session_state *run)
   if (run->outcome != OUTCOME_DONE) report_error(&run->status);
 }
 
-/* What the run's speed depends on. */
+/* Prints number and binding of threads. */
 static void announce(const struct scene *scene)
 {
   char binding[THREADS_TEXT];

@@ -1,4 +1,4 @@
-/* A run from its first step to its last line: steps, what is recorded, progress, signals, and how it ended. */
+/* A run of a simulation: steps, recording, progress, signals, and report of the outcome. */
 #ifndef DELBM_CLI_SESSION_H
 #define DELBM_CLI_SESSION_H
 
@@ -12,8 +12,8 @@ struct session {
   bool quiet;
 };
 
-/* Runs to the end of the scene, from the simulation's present step. SIGINT, SIGTERM and SIGHUP end it after a checkpoint.
- * Returns the exit code; what went wrong has been reported. */
+/* Runs from the present step of the simulation to run.steps. SIGINT, SIGTERM and SIGHUP end the run after a checkpoint.
+ * Returns the exit code; reports errors. */
 int session_run(const struct session *session);
 
 #endif

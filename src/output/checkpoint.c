@@ -61,25 +61,25 @@ static bool check_head(const char *path, const struct checkpoint_head *head, uin
   return true;
 }
 
-/* True if the bytes that follow the head and the head itself have the sum at the end of the file. */
+/* Compares the CRC-32 of the head and the rest of the file with the sum in its last bytes. */
 static bool check_sum(FILE *stream, const char *path, const struct checkpoint_head *head, struct status *status)
 {
   uint32_t sum = (uint32_t)crc32_z(0, (const void *)head, sizeof *head), found = 0;
   unsigned char *buffer = memory_allocate(BUFFER, 1, "a checkpoint", status);
   if (!buffer) return false;
-  size_t held = 0, got; /* the last bytes are held back: they are the sum */
-  while ((got = fread(buffer + held, 1, BUFFER - held, stream)) > 0) {
-    held += got;
-    if (held <= sizeof found) continue;
-    sum = (uint32_t)crc32_z(sum, buffer, held - sizeof found);
-    memmove(buffer, buffer + held - sizeof found, sizeof found);
-    held = sizeof found;
+  size_t kept = 0, got; /* the last bytes read may be the sum, and are kept in the buffer */
+  while ((got = fread(buffer + kept, 1, BUFFER - kept, stream)) > 0) {
+    kept += got;
+    if (kept <= sizeof found) continue;
+    sum = (uint32_t)crc32_z(sum, buffer, kept - sizeof found);
+    memmove(buffer, buffer + kept - sizeof found, sizeof found);
+    kept = sizeof found;
   }
   const bool failed = ferror(stream);
-  if (held == sizeof found) memcpy(&found, buffer, sizeof found);
+  if (kept == sizeof found) memcpy(&found, buffer, sizeof found);
   free(buffer);
   if (failed) return file_fail(status, "read", path, errno);
-  return (held == sizeof found && found == sum) ||
+  return (kept == sizeof found && found == sum) ||
          refuse(status, path, "damaged or incomplete: its checksum does not match");
 }
 

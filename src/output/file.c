@@ -76,7 +76,7 @@ static bool is_device(const struct stat *found)
   return S_ISCHR(found->st_mode) || S_ISBLK(found->st_mode);
 }
 
-/* A new file `name` in an open folder; the path is for messages. */
+/* Creates a file in an open folder. `path`: for messages. */
 static int create_at(int folder, const char *name, const char *path, int flags, struct status *status)
 {
   struct stat found;
@@ -112,7 +112,7 @@ FILE *file_create_stream(const char *path, struct status *status)
   return create_stream_at(AT_FDCWD, path, path, status);
 }
 
-/* False unless this is a file with bytes of its own, and without `shared` of no other name. */
+/* Fails unless this is a plain file and, without `shared`, has no other hard link. */
 static bool check_plain(int descriptor, const char *path, bool shared, struct status *status)
 {
   struct stat found;
@@ -125,7 +125,7 @@ static bool check_plain(int descriptor, const char *path, bool shared, struct st
                      path, (uintmax_t)found.st_nlink);
 }
 
-/* Without O_NONBLOCK a FIFO would be waited for. */
+/* O_NONBLOCK: without it, open waits for the writer of a FIFO. */
 static int open_plain(const char *path, int flags, bool shared, struct status *status)
 {
   const int descriptor = open(path, flags | O_NONBLOCK | O_CLOEXEC);
@@ -164,7 +164,7 @@ bool file_stays(int descriptor, const char *path, struct status *status)
                      "cannot go on in %s: it was removed, moved or replaced while the run wrote there", path);
 }
 
-/* A device, also one that a link leads to, stays what it is: /dev/null, /dev/stdout. */
+/* Refuses devices, also through links: /dev/null, /dev/stdout must not be replaced. */
 static bool check_replaceable(const char *path, struct status *status)
 {
   struct stat found;
@@ -172,7 +172,6 @@ static bool check_replaceable(const char *path, struct status *status)
          status_fail(status, DELBM_IO, "cannot write %s: it is a device, not a file", path);
 }
 
-/* What a path ends in, and the folder that this lies in, opened; -1 on failure. */
 static const char *last_part(const char *path)
 {
   const char *slash = strrchr(path, '/');
@@ -190,7 +189,6 @@ static int open_parent(const char *path, struct status *status)
   return descriptor;
 }
 
-/* Releases what a replacement has, once it has ended. */
 static void release(struct replacement *file)
 {
   if (file->folder >= 0) close(file->folder);
@@ -212,12 +210,12 @@ bool replacement_begin(struct replacement *file, const char *path, struct status
 
 bool file_sync(int descriptor, const char *path, struct status *status)
 {
-  while (fsync(descriptor) != 0) /* EINVAL: what cannot be synchronised (a pipe, a device) has nothing to lose */
+  while (fsync(descriptor) != 0) /* EINVAL: a pipe or a device, which cannot be synchronised */
     if (errno != EINTR) return errno == EINVAL || file_fail(status, "write", path, errno);
   return true;
 }
 
-/* Closes and removes the file as far as it was written; returns false. */
+/* Closes and removes the temporary file; returns false. */
 static bool discard(struct replacement *file)
 {
   fclose(file->stream);

@@ -3,7 +3,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Length of the UTF-8 sequence that starts here, 0 when the bytes are not UTF-8. */
+/* Length of the UTF-8 sequence at `text`; 0 if it is not UTF-8. */
 static size_t utf8_length(const unsigned char *text)
 {
   if (text[0] < 0x80) return 1;

@@ -1,7 +1,7 @@
 /* A simulation of a scene. Between two calls all rows and all discs are at the same step, and the state is complete:
- * fluid, discs, their occupation, and the sums of the coming exchange. Functions with a status fail as their comments
- * say; after a failed simulation_advance the simulation can be reported and destroyed, no more (simulation_usable).
- * Calls are for one thread at a time; threads are started inside. Order of the step: simulation.c. */
+ * fluid, discs, their occupation, and the sums of the coming exchange. After a failed simulation_advance the
+ * simulation can be reported and destroyed, no more (simulation_usable). Calls are for one thread at a time; threads
+ * are started inside. Order of the step: simulation.c. */
 #ifndef DELBM_SIM_SIMULATION_H
 #define DELBM_SIM_SIMULATION_H
 

@@ -142,7 +142,7 @@ static bool weigh_runs(struct occupation *o, int index, const struct band_draft 
   struct band *band = &o->bands[index];
   uint32_t first = 0;
   if (cells > UINT32_MAX - SLACK)
-    return status_fail(status, DELBM_FAILED, "%zu covered cells in %d rows are more than a band can hold", cells,
+    return status_fail(status, DELBM_FAILED, "%zu cells of discs in %d rows are more than a band can store", cells,
                        BAND_ROWS);
   if (!memory_grow(&band->owner_weight, &band->weight_capacity, cells + SLACK, sizeof *band->owner_weight,
                    "a band's cells", status))
