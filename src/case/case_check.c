@@ -145,7 +145,7 @@ static void check_substeps(struct draft *draft)
     draft_refuse(draft, "contact.substeps", "auto or 1: with contact.area: cells the overlap is known once a step");
 }
 
-/* The first law alone reads areas. */
+/* Areas are used by contact.law: overlap only. */
 static void check_law(struct draft *draft)
 {
   if (draft->scene.contact.area == AREA_CELLS && draft->scene.contact.law != 0)

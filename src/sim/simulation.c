@@ -10,7 +10,7 @@
  *                        pass through memory the sums of the next exchange, over the next occupation.
  *
  * Stage 4 imposes the present occupation on the fluid and sums over the cells of the next one. Hence there are two,
- * whose roles count_step exchanges. Before the first step, and after every change by a caller, paint and
+ * whose roles count_step swaps. Before the first step, and after every change by a caller, paint and
  * take_first_sums compute the occupation and sums that a sweep would have left.
  *
  * Blocking in time (blocked.h). Without discs, blocks of several steps run in one pass through memory. With discs, a
@@ -236,8 +236,8 @@ bool simulation_measure(const struct scene *scene, struct simulation_memory *mem
   return good;
 }
 
-/* Steps of a scene without discs, in blocks of equal length, up to the depth that tuning.h has chosen and not across the
- * end of an interval of zero_flux. */
+/* Steps of a scene without discs, in blocks of equal length, up to the depth that tuning.h has chosen and not across
+ * the end of an interval of zero_flux. */
 static void run_blocks(struct simulation *s, int64_t steps)
 {
   const int64_t end = s->step + steps;

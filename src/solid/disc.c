@@ -22,7 +22,8 @@ struct shape_box disc_box(const struct shape *disc, const struct pose *pose)
       .column = (int)floor(pose->x - radius), .row = row, .rows = (int)ceil(pose->y + radius) - row};
 }
 
-/* Distances from the centres to the chord of the lens; if one disc is inside the other, to the centre of the smaller one. */
+/* Distances from the centres to the chord of the lens; if one disc is inside the other, to the centre of the smaller
+ * one. */
 static void find_arms(double ra, double rb, struct body_overlap *o)
 {
   const double difference = ra - rb;

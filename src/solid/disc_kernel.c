@@ -1,11 +1,11 @@
 /* Occupation fractions of a disc, compiled once per instruction set (VARIANT).
  *
- * With the centre at the origin, let area(a, b) be the area of the disc's part {x > a, y > b}. The area in a cell is the alternating
- * sum of area(a, b) over its four corners. For a corner inside the disc the variables separate,
+ * With the centre at the origin, let area(a, b) be the area of the disc's part {x > a, y > b}. The area in a cell is
+ * the alternating sum of area(a, b) over its four corners. For a corner inside the disc the variables separate,
  *   area(a, b) = pi R^2/4 - D(a) - D(b) + a b,   D(t) = (R^2 asin(t/R) + t sqrt(R^2 - t^2))/2,
- * and outside the disc area(a, b) depends on the quadrant of the corner. Per disc t, the half chord h = sqrt(R^2 - t^2) and D(t) are
- * tabulated for its column lines and its row lines. The cost is one arcsine a line, not eight a cell, and no branch depends on the
- * cell. bench/disc_area.h has the same cell by cell, as a reference.
+ * and outside the disc area(a, b) depends on the quadrant of the corner. Per disc t, the half chord h = sqrt(R^2 - t^2)
+ * and D(t) are tabulated for its column lines and its row lines. The cost is one arcsine a line, not eight a cell, and
+ * no branch depends on the cell. bench/disc_area.h has the same cell by cell, as a reference.
  *
  * extents    first and last cell of each row, and the cells wholly inside, from the chords at the row's two lines
  * fractions  eps of all touched cells. Discs up to NARROW lines wide: all corners of a row at once. Wider discs:

@@ -49,8 +49,9 @@ struct lens {
   double area, chord;
 };
 
-/* An overlap as a contact: the unit normal n from this body to the other body or the side, and the contact point, which lies on the line
- * through the centroid along n, at the distance arm[0] from the centroid of this body and arm[1] from the other's (0 for a side). */
+/* An overlap as a contact: the unit normal n from this body to the other body or the side, and the contact point, on
+ * the line through the centroid along n, at the distances arm[0] from the centroid of this body and arm[1] from the
+ * other centroid (0 for a side). */
 struct body_overlap {
   struct lens lens;
   double distance; /* from centroid to centroid, or to the edge of the half plane */
@@ -66,9 +67,10 @@ struct shape_kind {
   struct shape_box (*box)(const struct shape *shape, const struct pose *pose);
   shape_extents *extents;
   shape_fractions *fractions;
-  /* With another body of the same kind whose centroid is (dx, dy) away; coincident centroids are separated along x. */
+  /* With another body of the same kind at (dx, dy) from this centroid; for (0, 0) the normal is along x. */
   struct body_overlap (*overlap)(const struct shape *shape, const struct shape *other, double dx, double dy);
-  /* With the half plane of outward normal (nx, ny) whose edge is `distance` from the centroid; negative if the centroid is inside. */
+  /* With the half plane of outward normal (nx, ny) at `distance` from the centroid; negative if the centroid is
+   * inside. */
   struct body_overlap (*overlap_half_plane)(const struct shape *shape, double distance, double nx, double ny);
 };
 
