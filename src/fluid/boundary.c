@@ -85,15 +85,17 @@ void boundary_reset(struct boundary *b, const struct populations *p)
   }
 }
 
-/* slot[to + k] = a slot[from + k] + c[k] for k < n. */
+/* slot[to + k] = a slot[from + k] + c[k] for k < n. Rows end in one cell at each side: no loop, which costs as much as the cell. */
 static void move(struct populations *p, size_t to, size_t from, int n, double a, const double *c)
 {
   if (p->precision == PRECISION_DOUBLE) {
     double *slot = p->block;
-    for (int k = 0; k < n; k++) slot[to + (size_t)k] = a * slot[from + (size_t)k] + c[k];
+    slot[to] = a * slot[from] + c[0];
+    for (int k = 1; k < n; k++) slot[to + (size_t)k] = a * slot[from + (size_t)k] + c[k];
   } else {
     float *slot = p->block;
-    for (int k = 0; k < n; k++) slot[to + (size_t)k] = (float)a * slot[from + (size_t)k] + (float)c[k];
+    slot[to] = (float)a * slot[from] + (float)c[0];
+    for (int k = 1; k < n; k++) slot[to + (size_t)k] = (float)a * slot[from + (size_t)k] + (float)c[k];
   }
 }
 
