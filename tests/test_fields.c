@@ -432,6 +432,27 @@ static void flip(const char *path, long at, int bit)
   cr_assert(fseek(file, at, SEEK_SET) == 0 && fputc(byte ^ 1 << bit, file) >= 0 && fclose(file) == 0);
 }
 
+/* Where three numbers stand in a file for the first time. */
+static long find(const char *path, const double numbers[3])
+{
+  static char bytes[1 << 20];
+  FILE *file = fopen(path, "rb");
+  cr_assert(file);
+  const size_t size = fread(bytes, 1, sizeof bytes, file);
+  const char *at = memmem(bytes, size, numbers, 3 * sizeof *numbers);
+  cr_assert(at && fclose(file) == 0);
+  return at - bytes;
+}
+
+/* Numbers of discs are not deflated: nothing but their checksum tells. */
+Test(fields, with_a_flipped_bit_in_the_radius_of_a_disc_are_refused)
+{
+  cr_assert_eq(shell("$DELBM run flow.yaml --quiet --out a --set output.checkpoint.every=110 >/dev/null"), 0);
+  flip("a/fields.h5", find("a/fields.h5", (const double[]){9, 8, 8}) + 6, 3);
+  cr_expect_eq(shell("$DELBM resume a --quiet --steps 260 >/dev/null 2>err"), 4);
+  cr_expect_eq(shell("grep -q 'a/fields.h5: radius of step 0 is damaged or missing' err || { cat err; false; }"), 0);
+}
+
 /* What is not noticed must do no harm: bytes that mean nothing. */
 Test(fields, with_a_flipped_bit_anywhere_are_refused_or_have_the_values_they_had)
 {
