@@ -171,15 +171,15 @@ static double density_of(const double *f)
   return sum;
 }
 
-/* Advances an outlet's ghost cell (boundary.h) beside a cell; (ex, ey) is the direction into the box. */
+/* Advances an outlet's ghost cell (fluid/boundary.c) beside a cell; (ex, ey) is the direction into the box. */
 static void update_ghost(struct reference *r, enum side_name name, size_t cell, int ex, int ey)
 {
-  const double hold = boundary_outlet_hold(r->nx, r->ny), *f = r->collided + cell * Q;
+  const double h = boundary_outlet_rate(r->nx, r->ny), *f = r->collided + cell * Q;
   const double now = less_momentum(f, ex, ey), rho = density_of(f);
   struct reference_ghost *ghost = &r->ghost[name][cell];
   if (!r->stepped) ghost->last = less_momentum(r->f + cell * Q, ex, ey);
-  ghost->drift += hold / 6 * (now - ghost->last + ghost->cut - ghost->drift);
-  ghost->cut = hold * (rho - 1 - ghost->cut / 2) + ghost->drift;
+  ghost->drift += h / 6 * (now - ghost->last + ghost->cut - ghost->drift);
+  ghost->cut = h * (rho - 1 - ghost->cut / 2) + ghost->drift;
   ghost->last = now;
 }
 

@@ -5,7 +5,7 @@
 
 #include "fluid/sweep.h"
 
-/* A ghost cell of an outlet: d and cut of boundary.h, and 3 (rho - j) of the cell beside it one step ago. */
+/* A ghost cell of an outlet: d and cut of fluid/boundary.c, and 3 (rho - j) of the cell beside it one step ago. */
 struct reference_ghost {
   double drift, cut, last;
 };

@@ -2,9 +2,9 @@
 
 #include <math.h>
 
-enum { ROWS = 8 }; /* at once */
+enum { ROWS = 8 }; /* evaluated in one call */
 
-static size_t numbers_of(double radius)
+static size_t scratch_of(double radius)
 {
   return ROWS * ((size_t)ceil(2 * radius) + 3) + SHAPE_PAD;
 }
@@ -13,11 +13,11 @@ size_t cells_area_scratch(const struct discs *d)
 {
   double radius = 0;
   for (size_t i = 0; i < d->count; i++) radius = fmax(radius, d->radius[i]);
-  return 2 * numbers_of(radius);
+  return 2 * scratch_of(radius);
 }
 
-/* One of the two bodies, at the image nearest to the other one, and fractions of some rows of its cells. */
-struct covered {
+/* One of the two bodies, at its image nearest to the other body, and the fractions eps of up to ROWS rows. */
+struct body {
   const struct shape *shape;
   struct pose pose;
   struct shape_box box;
@@ -25,7 +25,7 @@ struct covered {
   double *eps;
 };
 
-static void cover(struct covered *c, int row, int rows)
+static void find_fractions(struct body *c, int row, int rows)
 {
   c->shape->kind->extents(c->shape, &c->pose, row, rows, &c->extents);
   c->shape->kind->fractions(c->shape, &c->pose, row, 0, rows, &c->extents, c->eps);
@@ -41,8 +41,8 @@ static int smaller(int a, int b)
   return a < b ? a : b;
 }
 
-/* (23) over row k of the rows that stand in the extents; `a` and `b` are the fractions of its cells. */
-static double row_area(const struct scene *scene, const struct covered c[2], int k, const double *a, const double *b)
+/* (23) over row k of the extents; `a` and `b`: fractions of its cells. */
+static double row_area(const struct scene *scene, const struct body c[2], int k, const double *a, const double *b)
 {
   const int first_a = c[0].box.column + c[0].extents.first[k], first_b = c[1].box.column + c[1].extents.first[k];
   int first = larger(first_a, first_b);
@@ -61,8 +61,8 @@ static double row_area(const struct scene *scene, const struct covered c[2], int
 
 double cells_area(const struct scene *scene, const struct discs *d, uint32_t a, uint32_t b, double *scratch)
 {
-  struct covered c[2] = {{.shape = &d->shape[a], .pose = discs_pose(d, a), .eps = scratch},
-                         {.shape = &d->shape[b], .pose = discs_pose(d, b), .eps = scratch + numbers_of(d->radius[a])}};
+  struct body c[2] = {{.shape = &d->shape[a], .pose = discs_pose(d, a), .eps = scratch},
+                      {.shape = &d->shape[b], .pose = discs_pose(d, b), .eps = scratch + scratch_of(d->radius[a])}};
   const int *size = scene->domain.size;
   c[1].pose.x = c[0].pose.x + nearest_image(c[1].pose.x - c[0].pose.x, size[0], scene_is_periodic(scene, 0));
   c[1].pose.y = c[0].pose.y + nearest_image(c[1].pose.y - c[0].pose.y, size[1], scene_is_periodic(scene, 1));
@@ -77,7 +77,7 @@ double cells_area(const struct scene *scene, const struct discs *d, uint32_t a, 
   for (int row = first; row < end; row += ROWS) {
     const int rows = smaller(ROWS, end - row);
     const double *eps[2] = {c[0].eps, c[1].eps};
-    for (int k = 0; k < 2; k++) cover(&c[k], row, rows);
+    for (int k = 0; k < 2; k++) find_fractions(&c[k], row, rows);
     for (int k = 0; k < rows; k++) {
       area += row_area(scene, c, k, eps[0], eps[1]);
       for (int n = 0; n < 2; n++) eps[n] += c[n].extents.end[k] - c[n].extents.first[k];

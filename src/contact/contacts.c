@@ -1,28 +1,30 @@
 /* Contacts.
  *
- * Before this stage the exchange has solved, for each disc, the change of velocity over the step without contacts, dV, and its
- * response K to an impulse (coupling/exchange.h): with the impulse J = (J_x, J_y, J_omega) of its contacts the disc ends the step at
- * V + dV + K J. This stage finds J; the motion of the discs (sim/motion.h) follows it.
+ * The exchange (coupling/exchange.c) precedes this stage: for each disc it has found dV, the change of velocity over
+ * the step without contacts, and the response K to an impulse. With the impulse J = (J_x, J_y, J_omega) of its
+ * contacts a disc ends the step at V + dV + K J. This stage finds J; stage_motion (sim/motion.h) applies J.
  *
- * List. A contact is a pair of discs, or a disc and a side that is not periodic. A list is made each step of those that can act in it:
- * pairs whose gap is below `within` (1 cell with sub-steps, more than two discs below Mach 0.6 can close in a step; 0 with one
- * sub-step, since the force is then that of the start), taken from the neighbours of pairs.h, and sides as near. Pairs by (a, b), then
- * sides by disc: the order depends on positions and indices alone.
+ * List. A contact is a pair of discs, or a disc and a side that is not periodic. The list of a step contains the
+ * contacts with a gap below `within`: 1 cell with sub-steps, since two discs below Mach 0.6 approach by less than
+ * 0.7 cells in a step; 0 with one sub-step, since the force is then evaluated at the start of the step;
+ * cells_area_gap with area by cells. Candidates come from the pair list (pairs.h). Order: pairs by (a, b), then
+ * sides by disc, from positions and indices alone.
  *
- * Sub-steps. Stiff contacts take n of them, of length h = 1/n: enough for the stiffest contact of the list (substeps.h). Within the
- * step a disc accelerates at the constant rate dV but for contacts. A leapfrog, whose velocities lie half a sub-step before its
- * positions:
- *   J_k = law(x_k, v_k, (h_last + h)/2),   v' = v + h dV + K sum J_k,   x' = x + h v',
- * where the impulse lasts from the middle of the last sub-step to the middle of this one; with h alone a change of h would gain energy.
- * The last sub-step ends at the very velocity that the solve gives for the sum of all impulses. With n = 1 the
- * motion of the discs does the same by itself. Areas by cells are known once a step: with them n = 1.
+ * Sub-steps. n sub-steps of length h = 1/n, with n from the stiffest contact of the list (substeps.h). Within the
+ * step a disc accelerates at the constant rate dV, contacts apart. The leapfrog, with velocities half a sub-step
+ * before positions:
+ *   J_k = law(x_k, v_k, (h_last + h)/2),   v' = v + h dV + K sum J_k,   x' = x + h v'.
+ * The impulse lasts from the middle of the last sub-step to the middle of this sub-step; with h alone as its
+ * duration a change of h gains energy. The final velocity is V + dV + K sum J, as of the solve. With n = 1
+ * stage_motion does the same. Area by cells is evaluated once a step: n = 1.
  *
- * State. What a contact passes on from step to step (state.h) is saved, in the order of the list, for contacts that have acted, and is
- * part of a checkpoint.
+ * State. The states (state.h) of contacts that have acted are saved in the order of the list and are part of a
+ * checkpoint.
  *
- * Threads. Each contact's impulse is written to the contact by the thread that has the contact, and one thread adds the impulses to
- * the discs in the order of the list; then each disc is moved by one thread. No two threads write the same number, and the bits are the
- * same for any number of threads. A short list is worked on by one thread, in a region of its own, since barriers would cost more. */
+ * Threads. A contact's impulse is written into the contact by one thread; one thread adds the impulses to the discs
+ * in the order of the list; each disc is moved by one thread. So there is no race, and the bits are independent of
+ * the number of threads. A list of up to SHORT contacts is processed by one thread, in a region of its own: barriers
+ * would cost more. */
 #include "contact/contacts.h"
 
 #include "base/memory.h"
@@ -38,11 +40,11 @@ enum { SHORT = 64, MAX_SUBSTEPS = 1000000 };
 
 struct contact {
   uint32_t a, b; /* discs; b from contact_sides on: a side */
-  bool is_new;   /* no state was saved of it */
+  bool is_new;   /* without saved state */
   double inverse_mass;
   double damping; /* eta */
   double cells_area;
-  struct wrench on_a, on_b; /* impulse in this sub-step; on_b stays 0 with a side */
+  struct wrench on_a, on_b; /* impulse in this sub-step; on_b: 0 with a side */
   struct contact_state state;
 };
 
@@ -113,7 +115,7 @@ static double inverse_mass(const struct discs *d, uint32_t i)
   return d->motion[i] == DISC_FREE ? 1 / d->mass[i] : 0;
 }
 
-/* Puts a disc, or nothing for a side, among those that the stage moves. */
+/* Adds a disc to the moving discs; no effect for a side. */
 static void start_moving(struct contacts *c, const struct discs *d, uint32_t i)
 {
   if (contact_is_with_side(i) || c->is_moving[i]) return;
@@ -127,7 +129,7 @@ static void start_moving(struct contacts *c, const struct discs *d, uint32_t i)
   c->impulse[i] = (struct wrench){0};
 }
 
-/* Adds a contact to the list, whose saved state is looked for from *at on. */
+/* Adds a contact to the list, with its saved state, which is searched from *at on. */
 static bool add_contact(struct contacts *c, const struct discs *d, uint32_t a, uint32_t b, size_t *at,
                         struct status *status)
 {
@@ -172,7 +174,7 @@ static bool add_sides(struct contacts *c, const struct discs *d, size_t *at, str
   return true;
 }
 
-/* The list of the step; by one thread. */
+/* Makes the list of the step; by one thread. */
 static bool make_list(struct contacts *c, struct discs *d, struct status *status)
 {
   const size_t bytes = d->count * sizeof(double), threads = (size_t)omp_get_num_threads();
@@ -194,7 +196,8 @@ static bool is_by_cells(const struct contacts *m, const struct contact *c)
   return m->scratch_size > 0 && !contact_is_with_side(c->b);
 }
 
-/* Prepares a contact for the step, and returns the sub-steps that it needs at the overlap that it may reach within the step. */
+/* Prepares a contact for the step; returns its number of sub-steps, at the largest overlap that it may reach in the
+ * step. */
 static int prepare(const struct contacts *m, const struct discs *d, const struct exchange *e, struct contact *c)
 {
   struct kinematics k = kinematics_of(m->scene, d, c->a, c->b, &m->at);
@@ -209,7 +212,7 @@ static int prepare(const struct contacts *m, const struct discs *d, const struct
   return substeps_needed(m->scene, contact_spring_at(&m->law, k.radius, reached).stiffness, c->damping, k.compliance);
 }
 
-/* Prepares all contacts and finds how many sub-steps the step takes. */
+/* Prepares all contacts; sets the number of sub-steps. */
 static void prepare_all(struct contacts *c, const struct discs *d, const struct exchange *e)
 {
   int max = 1;
@@ -223,7 +226,7 @@ static void prepare_all(struct contacts *c, const struct discs *d, const struct 
 #pragma omp barrier
 }
 
-/* A step of more sub-steps than a case may ask for would look like a program that hangs. */
+/* MAX_SUBSTEPS is the upper bound of the key contact.substeps. */
 static bool check_substeps(const struct contacts *c, struct team *team)
 {
   if (c->substeps <= MAX_SUBSTEPS) return true;
@@ -237,7 +240,7 @@ static bool check_substeps(const struct contacts *c, struct team *team)
   return false;
 }
 
-/* The impulse of a contact over `duration`, in a sub-step of length h, as wrenches on both bodies about their centres. */
+/* Sets the impulse of a contact over `duration`, in a sub-step of length h, as wrenches about the bodies' centres. */
 static void find_impulse(const struct contacts *m, const struct discs *d, const struct exchange *e, double duration,
                          double h, struct contact *c)
 {
@@ -259,7 +262,7 @@ static void add_wrench(struct wrench *sum, const struct wrench *w)
   sum->torque += w->torque;
 }
 
-/* Adds the impulses of the sub-step to its discs; by one thread. */
+/* Adds the impulses of the sub-step to the discs; by one thread. */
 static void add_impulses(struct contacts *m)
 {
   for (size_t k = 0; k < m->count; k++) {
@@ -338,6 +341,6 @@ bool stage_contact(struct contacts *c, const struct occupation *o, const struct 
     team_decide(team, &c->leave);
   }
   if (c->leave) return false;
-  if (c->count > SHORT) run_contacts(c, e, d, team); /* a failure makes all leave at the end of the next stage */
+  if (c->count > SHORT) run_contacts(c, e, d, team); /* a failure ends the run after the next stage */
   return true;
 }

@@ -10,8 +10,8 @@ static struct spring spring_of_area(const struct contact_law *law, const struct 
   return (struct spring){law->stiffness * k->overlap.lens.area, law->stiffness * k->overlap.lens.chord};
 }
 
-/* (8): proportional to the overlap, F = alpha k_n c delta. c is the chord of the lens at an overlap of 1 % of the smaller radius, so that
- * there the stiffness is that of the area law. */
+/* (8): F = alpha k_n c delta, delta the overlap, c the chord of the lens at delta = 1 % of the smaller radius, where
+ * the stiffness is equal to the area law's. */
 static struct spring spring_of_overlap(const struct contact_law *law, const struct kinematics *k)
 {
   const double design = 0.01 * fmin(k->radius[0], k->radius[1]);
@@ -23,7 +23,7 @@ static struct spring spring_of_overlap(const struct contact_law *law, const stru
   return (struct spring){stiffness * fmax(0, touch - k->overlap.distance), stiffness};
 }
 
-/* In the order of the choices of contact.law, which name them. */
+/* In the order of the choices of the key contact.law. */
 static contact_spring *const springs[] = {spring_of_area, spring_of_overlap};
 
 struct contact_law contact_law_of(const struct scene *scene)
@@ -67,7 +67,7 @@ struct spring contact_spring_at(const struct contact_law *law, const double radi
   return law->spring(law, &k);
 }
 
-/* Simpson's rule in the root of the overlap, in which forces that grow as a power of it are smooth. */
+/* Simpson's rule in the root of the overlap: forces proportional to overlap^(3/2) are smooth in the root. */
 double contact_energy(const struct contact_law *law, const double radius[2], double overlap)
 {
   enum { PARTS = 32 };

@@ -50,7 +50,8 @@ static int cell_along(const struct linked_cell *l, int axis, double at)
   return cell < 0 ? 0 : cell >= l->cells[axis] ? l->cells[axis] - 1 : cell;
 }
 
-/* Discs by cell, in each by index. The end of cell c doubles as the place where the next of c + 1 is entered. */
+/* Counting sort by cell, within a cell by index. start[c + 1] is the insertion point of cell c while discs are
+ * entered. */
 void linked_cell_sort(struct linked_cell *l, const struct discs *discs)
 {
   const size_t cells = (size_t)l->cells[0] * (size_t)l->cells[1];
@@ -73,7 +74,7 @@ static double nearest(const struct linked_cell *l, int axis, double d)
   return nearest_image(d, l->size[axis], l->periodic[axis]);
 }
 
-/* Pairs between disc i and the discs of a cell; within one cell each pair once. */
+/* Pairs of disc i with the discs of a cell; within the disc's own cell each pair once. */
 static bool search_cell(const struct linked_cell *l, const struct discs *d, struct pair_batch *row, uint32_t i,
                         size_t cell, struct status *status)
 {
@@ -89,7 +90,7 @@ static bool search_cell(const struct linked_cell *l, const struct discs *d, stru
   return true;
 }
 
-/* The cell `by` further along an axis, or -1 beyond the box. */
+/* Index of the cell at distance `by` along an axis; -1 outside of the box. */
 static int step_along(const struct linked_cell *l, int axis, int cell, int by)
 {
   const int n = l->cells[axis], to = cell + by;
@@ -97,8 +98,8 @@ static int step_along(const struct linked_cell *l, int axis, int cell, int by)
   return l->periodic[axis] ? (to % n + n) % n : -1;
 }
 
-/* Half of the cells around: those above, and to the right in the same row. Where a periodic axis has too few cells to tell its two
- * sides apart a pair may be found twice. */
+/* Half of the neighbouring cells: above, and to the right in the same row. On a periodic axis of at most 2 span
+ * cells a pair may be found twice. */
 bool linked_cell_search(const struct linked_cell *l, const struct discs *d, int y, struct pair_batch *row,
                         struct status *status)
 {

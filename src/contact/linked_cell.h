@@ -1,7 +1,7 @@
-/* Linked cells: the usual way to find pairs, as the real alternative to the grid that occupation paints.
+/* Linked cells: the standard search for pairs, as an alternative to the search in painted rows (pairs.h).
  *
- * The box is cut into square cells of a given edge; a counting sort files discs by cell, and each disc looks for partners in its
- * own cell and half of those around it, as far apart as a pair can be. */
+ * The box is divided into rectangular cells of about equal edges; discs are sorted by cell, and partners of a disc
+ * are searched in its own cell and in half of the neighbours within `span`. */
 #ifndef DELBM_CONTACT_LINKED_CELL_H
 #define DELBM_CONTACT_LINKED_CELL_H
 
@@ -13,22 +13,22 @@ struct linked_cell {
   double edge[2];
   bool periodic[2];
   double size[2];
-  double within; /* pairs are found up to this gap */
-  int span;      /* neighbouring cells over which a pair can extend */
-  size_t *start; /* [cells + 1] discs of cell c: discs[start[c]] .. */
+  double within; /* largest gap of a pair */
+  int span;      /* largest distance of the cells of a pair, in cells */
+  size_t *start; /* [cells + 1]; discs of cell c: discs[start[c]] .. discs[start[c + 1] - 1] */
   uint32_t *discs;
-  uint32_t *cell; /* of each disc */
+  uint32_t *cell; /* [disc] */
 };
 
-/* Cells with an edge of at least `edge`; 0: one largest diameter and `within`. */
+/* Cells with an edge of at least `edge`; 0: the largest diameter plus `within`. */
 bool linked_cell_create(struct linked_cell *linked, const struct scene *scene, const struct discs *discs, double edge,
                         double within, struct status *status);
 void linked_cell_destroy(struct linked_cell *linked);
 
-/* Files the discs by cell; by one thread. */
+/* Sorts the discs by cell; by one thread. */
 void linked_cell_sort(struct linked_cell *linked, const struct discs *discs);
 
-/* Adds the pairs with a gap below `within` between the discs of row y of cells and those of this and higher rows. */
+/* Adds the pairs with a gap below `within` and one disc in row y of cells, the other in row y or above. */
 bool linked_cell_search(const struct linked_cell *linked, const struct discs *discs, int y, struct pair_batch *batch,
                         struct status *status);
 

@@ -1,4 +1,4 @@
-/* A pair of discs, and pairs as one thread finds them. */
+/* A pair of discs, and a list of pairs that one thread fills. */
 #ifndef DELBM_CONTACT_PAIR_H
 #define DELBM_CONTACT_PAIR_H
 

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { RECENT = 512 }; /* pairs of a band that are remembered as tested */
+enum { RECENT = 512 }; /* size of the cache of tested pairs of a band */
 
 bool pairs_create(struct pair_list *list, const struct scene *scene, const struct discs *discs, double l,
                   struct status *status)
@@ -36,14 +36,14 @@ void pairs_destroy(struct pair_list *list)
   *list = (struct pair_list){0};
 }
 
-/* Rows `y` and `above` of a band, and where the pairs go that they show. */
+/* Search of a band. */
 struct search {
   const struct occupation *occupation;
   const struct discs *discs;
   struct pair_batch *batch;
   double within;
-  int cells;                  /* that a pair may be apart */
-  struct pair recent[RECENT]; /* tested already: most pairs show up in several rows */
+  int cells;                  /* largest distance of the runs of a pair, in rows and in columns */
+  struct pair recent[RECENT]; /* cache of tested pairs: most pairs appear in several rows */
 };
 
 static double gap(const struct occupation *o, const struct discs *d, uint32_t a, uint32_t b)
@@ -62,17 +62,17 @@ static bool test_pair(struct search *s, uint32_t a, uint32_t b, struct status *s
   return gap(s->occupation, s->discs, a, b) >= s->within || pair_batch_add(s->batch, &pair, status);
 }
 
-/* Runs of a row, moved by `shift` columns. */
+/* Runs of a row, shifted by `shift` columns. */
 struct row {
   const struct run *runs;
   size_t count;
   int shift;
 };
 
-/* All pairs of runs, one of each row, that have cells near each other. */
+/* Tests the owners of all pairs of runs, one of each row, at most s->cells columns apart. */
 static bool search_rows(struct search *s, const struct row *low, const struct row *high, struct status *status)
 {
-  size_t open = 0; /* runs of `high` before this end before all that is left of `low` */
+  size_t open = 0; /* runs of `high` before this index end before the current run of `low` */
   for (size_t l = 0; l < low->count; l++) {
     const struct run *run = &low->runs[l];
     const int from = run->x - s->cells - high->shift, end = run->x + run->n + s->cells - high->shift;
@@ -113,7 +113,7 @@ static bool search_grid(struct pair_list *list, size_t band, const struct occupa
   return search_band(&s, (int)band, status);
 }
 
-/* Counting sort by a of what all batches hold. */
+/* Counting sort of all batches by a. */
 static void sort_by_first(struct pair_list *list, size_t discs)
 {
   memset(list->next, 0, (discs + 1) * sizeof *list->next);
@@ -127,7 +127,7 @@ static void sort_by_first(struct pair_list *list, size_t discs)
     }
 }
 
-/* Enters a pair among those of disc a, which stand from `start` on, by b; once. */
+/* Inserts a pair, if new, into the pairs of disc a, which begin at `start`, by b. */
 static void insert(struct pair_list *list, size_t start, const struct pair *pair)
 {
   size_t at = list->count;
@@ -157,7 +157,7 @@ static bool join(struct pair_list *list, const struct discs *d, struct status *s
   return true;
 }
 
-/* Whether a disc has moved by more than half of the margin, or to no number. */
+/* True if disc i has moved by more than half of the margin or its position is NAN. */
 static bool has_moved(const struct pair_list *list, const struct occupation *o, const struct discs *d, size_t i)
 {
   const double dx = nearest_image(d->x[i] - list->x[i], o->size[0], o->periodic[0]);

@@ -58,7 +58,7 @@ static bool is_possible(const struct contact_states *s, size_t k, size_t discs)
 bool states_store(struct contact_states *s, size_t discs, struct store *store, struct status *status)
 {
   uint64_t count = s->count;
-  const double max = 0.5 * (double)discs * ((double)discs + 7); /* all pairs, and four sides each */
+  const double max = 0.5 * (double)discs * ((double)discs + 7); /* all pairs, and four sides per disc */
   if (!store_bytes(store, &count, sizeof count, status)) return false;
   if ((double)count > max)
     return status_fail(status, DELBM_IO, "cannot read %s: %llu contacts of %zu discs", store->path,

@@ -1,17 +1,17 @@
-/* Sub-steps: how many of them a step of stiff contacts takes, so that a contact lasts contact.steps_per_contact of them and its damper
- * does not overshoot. Areas by cells are known once a step: with them it is one. */
+/* Number of sub-steps of a step: a contact lasts at least contact.steps_per_contact sub-steps, and its damper does
+ * not overshoot. One with area by cells, which is evaluated once a step. */
 #ifndef DELBM_CONTACT_SUBSTEPS_H
 #define DELBM_CONTACT_SUBSTEPS_H
 
 #include "model/scene.h"
 
-/* For a contact of this stiffness (force per overlap), damping and inverse mass of relative motion. */
+/* For a contact of this stiffness (force per overlap), damping coefficient and inverse mass of relative motion. */
 int substeps_needed(const struct scene *scene, double stiffness, double damping, double inverse_mass);
 
-/* The most that any two of the scene's discs would take at an overlap of one cell. */
+/* Maximum over the scene's discs, at an overlap of one cell. */
 int substeps_max(const struct scene *scene);
 
-/* The same with the area by lens: what contact.substeps: auto would choose. */
+/* The same with area by lens: the choice of contact.substeps: auto. */
 int substeps_by_lens(const struct scene *scene);
 
 #endif

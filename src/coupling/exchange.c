@@ -1,51 +1,54 @@
 /* The exchange of momentum between fluid and discs, and the inertia of a disc in it.
  *
- * Linear solve. A cell of weight B receives the momentum B (-2 j + 2 rho v) from the solid, j with the force of the step, v the
- * velocity of the solid in the cell: linear in the velocity (V, omega) of the disc. Over the cells of a disc, with b = 2 w_p B
- * and lever arm r, the streamed, not yet collided populations give
+ * Linear solve. A cell of weight B receives the momentum B (-2 j + 2 rho v) from the solid, j with the force of the
+ * step, v the velocity of the solid in the cell: linear in the velocity (V, omega) of the disc. Over the cells of a
+ * disc, with b = 2 w_p B and lever arm r, the populations before collision yield
  *   P = sum b j, L = sum b (r x j), M0 = sum b rho, M1 = sum b rho r, M2 = sum b rho |r|^2,
- * and the change of velocity dV = (dVx, dVy, domega) in the step follows from
+ * and the change of velocity dV = (dVx, dVy, domega) in the step is the solution of
  *   A dV = R,  A = D + M,  D = diag(m - m_f, m - m_f, I - I_f),  R = weight + (P, L) - M V,
  *        | M0    0    -M1y |
  *   M =  | 0     M0    M1x |
  *        | -M1y  M1x   M2  |
- * The sweep then imposes the new velocity and needs no reduction. m_f and I_f, of the fluid that the disc displaces, are
- * subtracted because the fluid inside the disc moves with it and is counted as fluid.
+ * The sweep then imposes the new velocity and needs no reduction. m_f and I_f, mass and moment of inertia of the
+ * displaced fluid, are subtracted because the fluid inside the disc moves with the disc and is counted as fluid.
  *
- * Contacts. An impulse within one step acts against m - m_f + M0, about m + m_f, and not against m: where B = 1 the fluid
- * inside is reflected about the new velocity, so takes up twice the momentum that it needs and returns the excess one step
- * later. A contact that is over by then would gain that energy. Half of M0 is what the fluid inside needs to follow, so
- * impacts act through K with the fraction s = 1/2 of M, and the surface that the sweep imposes takes only that fraction of
- * the velocity that they add. The weight of discs at rest, however, is a steady force and acts through A as gravity does. The
- * steady part is C, the mean of the contact impulse J of a step over 100 steps:
- *   K^-1 = D + s M,  dV = A^-1 (R + C) + K (J - C),  surface velocity V + dV - (1 - s) K (J - C),  C' = C + (J - C)/100.
- * s = 1 where D + M/2 is not positive definite, as of a light disc pressed far into a wall. With s = 1 everywhere the test
+ * Contacts. An impulse within one step acts against m - m_f + M0, about m + m_f, in place of m: at B = 1 the fluid
+ * inside is reflected about the new velocity, so takes up twice the momentum of a rigid motion and returns the
+ * excess one step later. A shorter contact would gain this energy. M0/2 is the inertia of fluid in rigid motion, so
+ * impacts act through K with the fraction s = 1/2 of M, and the surface velocity contains only this fraction of the
+ * velocity added by impacts. The weight of discs at rest, however, is a steady force and acts through A as gravity
+ * does. The steady part is C, the mean contact impulse, which averages the contact impulse J of a step over 100
+ * steps:
+ *   K^-1 = D + s M,  dV = A^-1 (R + C) + K (J - C),  C' = C + (J - C)/100,  surface: V + dV - (1 - s) K (J - C).
+ * s = 1 if D + M/2 is not positive definite (a light disc far inside a wall). With s = 1 everywhere the test
  * impact/in_fluid_without_damping_no_energy_is_gained_at_any_stiffness fails; without C, stability/
  * a_disc_on_the_ground_comes_to_rest_and_the_contact_carries_its_weight.
  *
- * Virtual mass of light discs (cf. Schwarz, Kempe & Froehlich 2015). m_f counts all fluid inside the disc, but only M0/2 of
- * it follows within a step; the rest, in partly covered cells, follows in the time of sound. Below a density of
- * 1 - M0/(2 m_f), 0.1 to 0.3, the inertia within a step, m - m_f + M0/2, is negative, and sound between two discs, or a
- * disc and a side, grows. A virtual mass c makes it at least 0.15 m_f; the momentum p that c withholds is returned over a time T:
+ * Virtual mass of light discs (cf. Schwarz, Kempe & Froehlich 2015). m_f counts all fluid inside the disc, but only
+ * M0/2 accelerates with the disc within a step; the rest, in cells of eps < 1, responds in the time of sound. Below
+ * a density of 1 - M0/(2 m_f), 0.1 to 0.3, the inertia within a step, m - m_f + M0/2, is negative, and sound between
+ * two discs, or a disc and a side, grows. A virtual mass c raises this inertia to at least 0.15 m_f; the deferred
+ * momentum p is returned over a time T:
  *   A = ... + c,  R = ... + p/T,  p' = (1 - 1/T) p + c dV.
- * A steady acceleration is not changed, since then p = T c dV. Conserved is (m - m_f) V + p, also where c changes as the disc
- * moves over the cells. Rotation likewise. Momentum that is returned late feeds oscillations: at an angular frequency w the
- * power c w^2 T/(1 + w^2 T^2) V^2, where the boundary layer takes 4 pi R sqrt(nu w/2) V^2; the first is larger for
- * small discs at small viscosity. With T at least (c R/m_f)^2/nu, the time in which momentum diffuses over the part c/m_f
- * of R, it is at most a fifth of the second (test stability/a_crowd_of_small_light_discs_at_small_viscosity_rises_quietly).
+ * A steady acceleration is unchanged, with p = T c dV. (m - m_f) V + p is conserved, also when c changes as the disc
+ * moves over the cells. Rotation likewise. Deferred momentum drives oscillations: at an angular frequency w with the
+ * power c w^2 T/(1 + w^2 T^2) V^2, against the dissipation 4 pi R sqrt(nu w/2) V^2 of the boundary layer; the power
+ * is larger for small discs at small viscosity. With T at least (c R/m_f)^2/nu, the time of diffusion over the part
+ * c/m_f of R, the power is at most a fifth of the dissipation (test
+ * stability/a_crowd_of_small_light_discs_at_small_viscosity_rises_quietly).
  *
- * Where a side or another disc cuts off part of a light disc, the centre of the covered part is not that of the disc: M1
- * couples translation and rotation, and the least eigenvalue of D + M/2 counts, not its diagonal. m_f also counts fluid
- * beyond the side, and fluid of shared cells twice. So the bound of 0.15 grows by a multiple of |M1|/2, which vanishes in free
- * fluid. With 0.15 alone a disc of density 0.1, R = 3, against a wall at viscosity 1 rocks at a period of 5.5 steps,
- * growing by 3 % a step.
+ * Where a side or another disc cuts off part of a light disc, the centroid of its cells is off the disc's centre: M1
+ * couples translation and rotation, and the smallest eigenvalue of D + M/2 counts, not its diagonal. m_f also counts
+ * fluid beyond the side, and fluid of cells of two owners twice. So the bound of 0.15 grows by a multiple of |M1|/2,
+ * which vanishes in free fluid. With 0.15 alone a disc of density 0.1, R = 3, against a wall at viscosity 1
+ * oscillates at a period of 5.5 steps, with a growth of 3 % a step.
  *
- * explicit-averaged, for comparison: A = diag(m, m, I), R = weight + mean of the exchange at V over this step and the
- * step before; the surface velocity is V.
+ * explicit-averaged, for comparison: A = diag(m, m, I), R = weight + mean of the exchange at V over this step and
+ * the step before; the surface velocity is V.
  *
- * The sums are taken inside the sweep of the step before, row by row and one row behind it, while the row is in cache
- * (sim/flow.c). They are kept per row of each disc and added from the lowest row up, so that no bit depends on how rows are
- * shared out to threads. */
+ * Order. The sums are computed in the sweep of the step before, one row behind the sweep, while the row is in cache
+ * (sim/flow.c). They are stored per row of each disc and added from the lowest row up, so that the bits are
+ * independent of the distribution of rows to threads. Each disc is solved by one thread. */
 #include "coupling/exchange.h"
 
 #include "base/memory.h"
@@ -56,12 +59,12 @@
 /* Minimum of the inertia within a step, in units of m_f and I_f. */
 static const double min_inertia = 0.15;
 
-/* Added to that minimum per coupling |M1|/2. With 1 the least eigenvalue is the minimum; more is needed where a side cuts the
- * disc off, since m_f then counts fluid that is not there: with 3 a disc of R = 8, density 0.01, diverged at rest against a
- * wall at viscosity 10. */
+/* Factor of |M1|/2 in this minimum. With 1 the smallest eigenvalue is min_inertia; more is needed at sides, since
+ * m_f then counts fluid beyond the side: with 3 a disc of R = 8, density 0.01, at rest against a wall diverges at
+ * viscosity 10. */
 static const double coupled_inertia = 5;
 
-/* Duration of the mean C, in steps: much longer than an impact for which s matters. */
+/* Duration of the mean C, in steps: much longer than impacts with an effect of s. */
 static const double mean_contact_time = 100;
 
 static bool is_light(const struct discs *d, size_t i)
@@ -77,19 +80,19 @@ static bool any_light(const struct exchange *e, const struct discs *d)
   return false;
 }
 
-/* Virtual mass c and moment of inertia, and the time T over which what they withhold is returned. */
+/* Virtual mass c, virtual moment of inertia, and the time T of the return of deferred momentum. */
 struct virtual_mass {
   double mass, inertia, time;
 };
 
-/* All zero for a disc that is not light. */
+/* Zero for discs that are not light. */
 static struct virtual_mass virtual_mass_of(const struct exchange *e, const struct discs *d, size_t i)
 {
   if (!e->deferred || !is_light(d, i)) return (struct virtual_mass){0};
   const struct gathered *g = &e->gathered[i];
   const double inertia = d->mass[i] - d->fluid_mass[i] + g->m0 / 2;
   const double angular = d->inertia[i] - d->fluid_inertia[i] + g->m2 / 2;
-  /* off-diagonal part of diag(m - m_f, m - m_f, I - I_f) + M/2 in those units */
+  /* off-diagonal part of D + M/2 in units of m_f and I_f */
   const double coupling = sqrt((g->m1x * g->m1x + g->m1y * g->m1y) / (4 * d->fluid_mass[i] * d->fluid_inertia[i]));
   const double min = min_inertia + coupled_inertia * coupling;
   const double mass = fmax(0, min * d->fluid_mass[i] - inertia);
@@ -132,7 +135,7 @@ void exchange_destroy(struct exchange *e)
 bool exchange_store(struct exchange *e, size_t discs, struct store *store, struct status *status)
 {
   const size_t bytes = 3 * discs * sizeof(double);
-  uint8_t has_last_exchange = e->has_last_exchange; /* any byte may come back, of which not every one is a bool */
+  uint8_t has_last_exchange = e->has_last_exchange; /* a restored byte may not be a valid bool */
   const bool stored = store_mark(store, "exchange", status) &&
                       store_bytes(store, &has_last_exchange, sizeof has_last_exchange, status) &&
                       (!e->last_exchange || store_bytes(store, e->last_exchange, bytes, status)) &&
@@ -142,7 +145,7 @@ bool exchange_store(struct exchange *e, size_t discs, struct store *store, struc
   return stored;
 }
 
-/* Sums over the rows of a disc, from the lowest up, with the force of the coming step; b = 2 w_p B. */
+/* Sums over the rows of a disc, from the lowest up, j with the force of the coming step; b = 2 w_p B. */
 static struct gathered add_up(const struct occupation *o, const struct sweep_constants *c, size_t disc)
 {
   struct gathered g = {0};
@@ -165,7 +168,7 @@ static struct gathered add_up(const struct occupation *o, const struct sweep_con
   return g;
 }
 
-/* The exchange (force, torque) on a disc that moves with the given velocity: (P, L) - M V. */
+/* The exchange (force, torque) on a disc of velocity (vx, vy, omega): (P, L) - M V. */
 static void exchange_force(const struct gathered *g, double vx, double vy, double omega, double force[3])
 {
   force[0] = g->px - (g->m0 * vx - g->m1y * omega);
@@ -180,8 +183,8 @@ void response_to(const struct response *k, const double impulse[3], double dv[3]
   dv[2] = k->xw * impulse[0] + k->yw * impulse[1] + k->ww * impulse[2];
 }
 
-/* Inverse of diag(mass, mass, inertia) + fraction M, by elimination of omega: A = [[t, 0, -y], [0, t, x], [-y, x, w]]. False
- * unless A is positive definite. */
+/* Inverse of diag(mass, mass, inertia) + fraction M, by elimination of omega: A = [[t, 0, -y], [0, t, x], [-y, x,
+ * w]]. False unless A is positive definite. */
 static bool invert(const struct gathered *g, double mass, double inertia, double fraction, struct response *inverse)
 {
   const double t = mass + fraction * g->m0, w = inertia + fraction * g->m2, x = fraction * g->m1x,
@@ -198,19 +201,19 @@ static bool invert(const struct gathered *g, double mass, double inertia, double
   return true;
 }
 
-/* K, and the change of velocity without contacts, A^-1 (R + C) - K C; r is R, and then R + C. */
+/* Sets K and the change of velocity without contacts, A^-1 (R + C) - K C. `r`: R on entry, R + C on return. */
 static bool respond(struct response *response, const struct gathered *g, double mass, double inertia, double r[3],
                     const double c[3])
 {
-  double free[3], back[3];
+  double steady[3], contact[3];
   for (int k = 0; k < 3; k++) r[k] += c[k];
   if (!invert(g, mass, inertia, 1, response)) return false;
-  response_to(response, r, free);
-  invert(g, mass, inertia, 0.5, response); /* if it fails, the inverse with s = 1 remains */
-  response_to(response, c, back);
-  response->dvx = free[0] - back[0];
-  response->dvy = free[1] - back[1];
-  response->domega = free[2] - back[2];
+  response_to(response, r, steady);
+  invert(g, mass, inertia, 0.5, response); /* on failure the inverse with s = 1 remains */
+  response_to(response, c, contact);
+  response->dvx = steady[0] - contact[0];
+  response->dvy = steady[1] - contact[1];
+  response->domega = steady[2] - contact[2];
   return true;
 }
 
@@ -248,8 +251,9 @@ static void solve_explicit(struct exchange *e, const struct discs *d, size_t i, 
   e->response[i].domega = dv[2];
 }
 
-/* The reason why A of a disc cannot be inverted. */
-static void say_why(const struct exchange *e, const struct discs *d, size_t i, int64_t step, struct status *status)
+/* Reports the reason why A of a disc is not positive definite. */
+static void report_unsolved(const struct exchange *e, const struct discs *d, size_t i, int64_t step,
+                            struct status *status)
 {
   const double coupled = e->gathered[i].m0;
   if (coupled >= 0)
@@ -279,7 +283,7 @@ bool stage_exchange(struct exchange *e, const struct sweep_constants *constants,
       solve_explicit(e, d, i, weight);
     } else if (!solve_implicit(e, d, i, weight)) {
       struct status status;
-      say_why(e, d, i, step, &status);
+      report_unsolved(e, d, i, step, &status);
       team_fail(team, &status);
     }
   }
@@ -291,7 +295,7 @@ bool stage_exchange(struct exchange *e, const struct sweep_constants *constants,
   return !e->leave_unsolved;
 }
 
-/* The velocity by which the surface stays behind the disc in an impact, (1 - s) K (J - C). Updates C. */
+/* Difference of disc and surface velocity in an impact, (1 - s) K (J - C). Updates C. */
 static void surface_lag(struct exchange *e, size_t i, const double impulse[3], double lag[3])
 {
   double *mean = &e->mean_contact[3 * i], impact[3];
@@ -303,7 +307,7 @@ static void surface_lag(struct exchange *e, size_t i, const double impulse[3], d
   }
 }
 
-/* Moves what the virtual mass withholds in this step, or returns, from the force to the deferred momentum. */
+/* Moves the change of p in this step, c dV - p/T, from the force to p. */
 static void defer(struct exchange *e, const struct discs *d, size_t i, const double dv[3], double force[3])
 {
   const struct virtual_mass added = virtual_mass_of(e, d, i);

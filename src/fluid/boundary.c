@@ -1,3 +1,42 @@
+/* The sides of the box, as rules for links.
+ *
+ * A link is a cell at the edge and a population i that enters the cell from outside. Once a cell has completed a
+ * step, each rule computes, from a population sent by the cell, the population that a cell of the edge receives in
+ * the next step:
+ *   received_i(target) = a sent_m(source) + c[k],   k: number of the source along the side.
+ *
+ *   wall, inlet  half-way bounce-back: target = source, m the opposite of i, c = 6 w_i e_i.u, the momentum of a wall or
+ *                inflow of velocity u at the reference density.
+ *   periodic     source: the cell at the other end of the row, m = i, c = 0. In y rows wrap by address alone
+ *                (populations.h).
+ *   slip         mirror image: target one cell along the side from the source, in the direction of e_i; m is i with its
+ *                normal component reversed, c = 0. Normal velocity and shear stress are zero at the side.
+ *   outlet       zero gradient: a ghost cell beside the source sends the source's populations, m = i, c = -w_i cut.
+ *                The density of the ghost cell is below the density of the source by
+ *                  cut = h e + d,   (6/h) dd/dt = 3 d(e - j)/dt + cut - d,
+ *                e the excess over the reference density at the face between both cells, j the momentum along the
+ *                outward normal. Transmitted sound changes 3 (e - j) by -cut a step; the other changes are pressure
+ *                gradient and friction of the flow, estimated by d. The reflection factor of sound is
+ *                -((2 - sqrt(3)) s + k)/(s + k), k = h/(3 + sqrt(3)), s = i times the angular frequency, for any d;
+ *                the excess of steady flow, with cut = h e alone its pressure gradient over h, decays within some
+ *                multiples of 6/h steps.
+ *
+ * a = 1 in all rules. If m has the component of i along the side, the target is one cell farther along this
+ * component than the source. side_rules.c contains the table of the rules.
+ *
+ * Corners. The diagonal link out of the corner of two sides that are not periodic uses for each component of the
+ * velocity the side normal to this component: an inlet imposes its velocity, a wall or slip side 0. An outlet
+ * imposes none; the component is then imposed by the other side. m has the imposed components reversed, and c is the
+ * momentum at the imposed velocity. So the inflow of inlets is exactly velocity times length, a wall that moves into
+ * a corner pushes no fluid through the other wall, and a uniform stream remains uniform. At the corner of two
+ * outlets no component is imposed, and the ghost cell has the mean cut of its neighbours. A slip side imposes only
+ * the normal component: at its corner with an outlet it reflects the populations of the outlet's ghost cell.
+ *
+ * Storage. c[side][j] is an array over the cells of the side for each of the three links j of a cell; state[side] is
+ * an array over the same cells, of the rule's state (an outlet: d, cut and the last 3 (e - j)).
+ *
+ * Races. Every slot that a rule writes belongs to its link, or to the ghost cell, alone (populations.h), and a link
+ * depends only on its source: rows may be updated in any order that streaming allows, by any thread. */
 #include "fluid/boundary.h"
 
 #include "base/memory.h"
@@ -6,11 +45,11 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Populations that enter through a side. */
+/* Populations i that enter through a side. */
 static const int inward[SIDE_COUNT][SIDE_LINKS] = {
     [SIDE_LEFT] = {1, 5, 8}, [SIDE_RIGHT] = {3, 6, 7}, [SIDE_BOTTOM] = {2, 5, 6}, [SIDE_TOP] = {4, 7, 8}};
 
-/* The population whose velocity is that of i with the chosen components reversed. */
+/* The population whose velocity is e_i with the selected components reversed. */
 static int reversed(int i, const bool components[2])
 {
   const int ex = components[0] ? -d2q9_ex[i] : d2q9_ex[i], ey = components[1] ? -d2q9_ey[i] : d2q9_ey[i];
@@ -44,7 +83,7 @@ static bool create_side(struct boundary *b, enum side_name side, struct status *
 
 bool boundary_create(struct boundary *b, const struct side side[SIDE_COUNT], int nx, int ny, struct status *status)
 {
-  *b = (struct boundary){.side = side, .size = {nx, ny}, .hold = boundary_outlet_hold(nx, ny)};
+  *b = (struct boundary){.side = side, .size = {nx, ny}, .outlet_rate = boundary_outlet_rate(nx, ny)};
   for (enum side_name name = 0; name < SIDE_COUNT; name++) {
     b->rule[name] = side_rule_of(side[name].type);
     b->ring[side_axis(name)] = b->rule[name]->joins;
@@ -104,7 +143,7 @@ static enum side_name opposite(enum side_name side)
   return side_is_high(side) ? side - 1 : side + 1;
 }
 
-/* Cells target .. target + n - 1 of a side receive by link j what cells source .. source + n - 1 sent. */
+/* Link j of cells target .. target + n - 1 of a side, from cells source .. source + n - 1. */
 static void transfer(struct boundary *b, struct populations *p, enum side_name side, int j, int source, int target,
                      int n)
 {
@@ -117,8 +156,8 @@ static void transfer(struct boundary *b, struct populations *p, enum side_name s
        b->rule[side]->a, b->c[side][j] + source);
 }
 
-/* The links of one side whose sources are cells k0 .. k1 - 1, but for those out of a corner. `step`: these have just taken a
- * step. */
+/* The links of one side with sources k0 .. k1 - 1, corners excluded. `step`: the sources have completed a step, so
+ * the states advance. */
 static void side_links(struct boundary *b, struct populations *p, enum side_name side, int k0, int k1, bool step)
 {
   const struct side_rule *rule = b->rule[side];
@@ -128,7 +167,7 @@ static void side_links(struct boundary *b, struct populations *p, enum side_name
   if (step && rule->step) rule->fill(b, side, k0, k1);
   for (int j = 0; j < SIDE_LINKS; j++) {
     const int along = b->link[side][j].along, shift = b->link[side][j].shift;
-    const int low = (!ring && along > 0) - shift, high = n - (!ring && along < 0) - shift; /* of the sources */
+    const int low = (!ring && along > 0) - shift, high = n - (!ring && along < 0) - shift; /* sources without corners */
     const int first = k0 > low ? k0 : low, end = k1 < high ? k1 : high;
     transfer(b, p, side, j, first, first + shift, end - first);
     if (ring && shift < 0 && k0 == 0) transfer(b, p, side, j, 0, n - 1, 1);
@@ -190,8 +229,8 @@ void boundary_prefetch(const struct populations *p, int y)
 
 void boundary_refill(struct boundary *b, struct populations *p)
 {
-  struct populations before = *p; /* the same populations, as the last step left them */
+  struct populations before = *p; /* the same storage, with the parity of the last step */
   before.parity ^= 1;
-  if (p->parity == 0) return; /* what links receive has been read with the cells */
+  if (p->parity == 0) return; /* received populations are in the cells' own slots */
   for (int y = 0; y < p->ny; y++) links(b, &before, y, 0, p->nx, false);
 }

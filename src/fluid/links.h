@@ -1,4 +1,4 @@
-/* The links of the sides: which population is received of which, from where, and with which c (boundary.h). */
+/* The links of the sides: received population, sent population, source and c (boundary.c). */
 #ifndef DELBM_FLUID_LINKS_H
 #define DELBM_FLUID_LINKS_H
 
@@ -6,27 +6,27 @@
 
 struct side_rule;
 
-enum { SIDE_LINKS = 3 }; /* populations that enter through a side, of each of its cells */
+enum { SIDE_LINKS = 3 }; /* per cell of a side */
 
-/* One of them, for all cells of a side. */
+/* One link, for all cells of a side. */
 struct side_link {
-  int i, m;  /* what is received of what is sent */
+  int i, m;  /* received and sent population */
   int along; /* component of e_i along the side */
-  int shift; /* from source to target, along the side */
+  int shift; /* target less source, along the side */
 };
 
 struct boundary {
   const struct side *side; /* [SIDE_COUNT] */
   const struct side_rule *rule[SIDE_COUNT];
   int size[2];
-  bool ring[2]; /* whether the sides of each axis are joined */
-  double hold;  /* h, of outlets */
+  bool ring[2];       /* [axis]: periodic */
+  double outlet_rate; /* h */
   struct side_link link[SIDE_COUNT][SIDE_LINKS];
-  double *c[SIDE_COUNT][SIDE_LINKS]; /* of each link, by the cell along the side that is its source */
-  void *state[SIDE_COUNT];           /* of the rule, by cell along the side; NULL: none */
+  double *c[SIDE_COUNT][SIDE_LINKS]; /* [side][link][source along the side] */
+  void *state[SIDE_COUNT];           /* [side]: of the rule, by cell along the side; NULL: none */
 };
 
-/* Cells along a side, and cell k of them. */
+/* Number of cells along a side, and the position of cell k. */
 static inline int boundary_length(const struct boundary *b, enum side_name side)
 {
   return b->size[!side_axis(side)];

@@ -2,17 +2,17 @@
 
 #include <assert.h>
 
-/* Momentum of a wall or of inflow, at the reference density. */
+/* Momentum of a wall or of inflow at the reference density. */
 static void fill_momentum(struct boundary *b, enum side_name side, int k0, int k1)
 {
   for (int j = 0; j < SIDE_LINKS; j++)
     for (int k = k0; k < k1; k++) b->c[side][j][k] = d2q9_wall_momentum(b->link[side][j].i, b->side[side].velocity);
 }
 
-/* The state of a ghost cell of an outlet (boundary.h). */
+/* State of the ghost cell of an outlet (boundary.c). */
 struct outlet_cell {
   double drift; /* d */
-  double cut;   /* density of the source less that of the ghost */
+  double cut;   /* density of the source less density of the ghost cell */
   double last;  /* 3 (e - j) of the source after the last step */
 };
 
@@ -20,7 +20,7 @@ struct edge_moments {
   double excess, outwards; /* over the reference density; momentum along the outward normal */
 };
 
-/* Moments of cell k, from what it has sent or, with `coming`, from what it is about to collide. */
+/* Moments of cell k, from the populations that it has sent or, with `coming`, before its next collision. */
 static struct edge_moments edge_moments(const struct boundary *b, const struct populations *p, enum side_name side,
                                         int k, bool coming)
 {
@@ -62,7 +62,7 @@ static void reset_outlet(struct boundary *b, const struct populations *p, enum s
 
 static void step_outlet(struct boundary *b, const struct populations *p, enum side_name side, int k0, int k1)
 {
-  const double h = b->hold;
+  const double h = b->outlet_rate;
   for (int k = k0; k < k1; k++) {
     struct outlet_cell *ghost = (struct outlet_cell *)b->state[side] + k;
     const struct edge_moments m = edge_moments(b, p, side, k, false);

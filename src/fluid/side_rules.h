@@ -1,4 +1,4 @@
-/* The kinds of sides, a row of a table each: what a new one needs (boundary.h has the contract). */
+/* The kinds of sides, a row of the table in side_rules.c each (equations: boundary.c). */
 #ifndef DELBM_FLUID_SIDE_RULES_H
 #define DELBM_FLUID_SIDE_RULES_H
 
@@ -6,20 +6,20 @@
 
 struct side_rule {
   double a;
-  /* Which components of the fluid's velocity the side imposes, the normal one and the one along it. m is the population
-   * whose velocity has these reversed: the opposite of i with both (wall, inlet), its mirror image with the first alone, i
-   * itself with neither (outlet). At corners, where an imposed component is that of struct side. */
+  /* Components of the fluid's velocity that the side imposes: normal, tangential. m is i with the imposed components
+   * reversed: the opposite of i with both (wall, inlet), the mirror image with the normal component (slip), i with none
+   * (outlet). Also for corners, with the velocity of struct side. */
   bool imposes[2];
-  bool joins;   /* the sources are the cells of the other side of the axis (periodic) */
+  bool joins;   /* the sources are cells of the other side of the axis (periodic) */
   size_t state; /* bytes of each cell's state, zero at the start; 0: none */
 
-  /* Sets c of cells k0 .. k1 - 1, from the velocity or from their state. NULL: c is 0. */
+  /* Sets c of cells k0 .. k1 - 1, from velocity or state. NULL: c is 0. */
   void (*fill)(struct boundary *boundary, enum side_name side, int k0, int k1);
-  /* The step of the states of cells k0 .. k1 - 1, which have just sent, and `reset` their start with populations (of parity 0)
-   * that have been written and not yet collided; fill comes after either. NULL: c is constant. */
+  /* `step` advances the states of cells k0 .. k1 - 1, which have completed a step; `reset` starts all states from
+   * populations of parity 0 before their collision. A call of fill is next. NULL: c is constant. */
   void (*step)(struct boundary *boundary, const struct populations *populations, enum side_name side, int k0, int k1);
   void (*reset)(struct boundary *boundary, const struct populations *populations, enum side_name side);
-  /* c/w_i at the link out of a corner, where neither side imposes one of its components. */
+  /* c/w_i of the link out of a corner with a component that neither side imposes. */
   double (*corner)(const struct boundary *boundary, enum side_name side, int k);
 };
 

@@ -17,7 +17,7 @@ struct fields {
   struct sample sample;
   struct points points;
   char *path, *folder, *xdmf_path;
-  struct snapshot *snapshots; /* in the order of their steps */
+  struct snapshot *snapshots; /* by step */
   size_t count, capacity;
   struct xdmf xdmf;
 };
@@ -53,7 +53,7 @@ static bool append(struct fields *f, int64_t step, size_t points, struct status 
   return true;
 }
 
-/* Ends a file: commits it if all was written. */
+/* Commits a file if `written`, else abandons the file. */
 static bool finish(struct hdf5_file *file, bool written, struct status *status)
 {
   if (written) return hdf5_commit(file, status);
@@ -80,7 +80,7 @@ static bool write_index(const struct fields *f, struct status *status)
   return finish(&file, write_links(f, file.handle) || file_fail(status, "write", f->path, errno), status);
 }
 
-/* A snapshot of its own file from one in a file of all. */
+/* Copies a snapshot from a joined file into a file of its own. */
 static bool extract(const struct fields *f, hid_t all, int64_t step, const char *path, struct status *status)
 {
   struct hdf5_file file;
@@ -90,15 +90,15 @@ static bool extract(const struct fields *f, hid_t all, int64_t step, const char 
   return finish(&file, written || file_fail(status, "write", path, errno), status);
 }
 
-/* The file that an external link leads to must be there, and a file: HDF5 would wait for a FIFO. */
+/* The target of an external link must be a plain file: HDF5 would block on a FIFO. */
 static bool check_file(const char *path, struct status *status)
 {
   FILE *stream = file_open_stream(path, status);
   return stream && fclose(stream) == 0;
 }
 
-/* Checks a snapshot of the file before, which is an index or has the snapshot in itself, and gives it a file of its own. */
-static bool keep_snapshot(const struct fields *f, hid_t before, struct snapshot *snapshot, struct status *status)
+/* Checks a snapshot of the earlier fields.h5, an index or a joined file; a snapshot of a joined file is extracted. */
+static bool adopt_snapshot(const struct fields *f, hid_t before, struct snapshot *snapshot, struct status *status)
 {
   char name[SNAPSHOT_NAME];
   H5L_info_t link;
@@ -112,7 +112,7 @@ static bool keep_snapshot(const struct fields *f, hid_t before, struct snapshot 
   return kept;
 }
 
-/* Snapshots to come must lie where those before lie: they are one series. */
+/* New snapshots must have the grid of the earlier snapshots of the series. */
 static bool check_grid(const struct fields *f, hid_t before, struct status *status)
 {
   struct sample_grid was;
@@ -133,7 +133,7 @@ static bool check_grid(const struct fields *f, hid_t before, struct status *stat
       was.first[1]);
 }
 
-/* What listing needs, and the last step before which a snapshot is kept. */
+/* Context of note_snapshot; snapshots from step `before` on are discarded. */
 struct listing {
   struct fields *fields;
   int64_t before;
@@ -168,20 +168,20 @@ static bool list_snapshots(struct fields *f, hid_t before, const struct fields_m
   return true;
 }
 
-static bool take_up(struct fields *f, const struct fields_mark *mark, struct status *status)
+static bool read_earlier(struct fields *f, const struct fields_mark *mark, struct status *status)
 {
   if (mark->count == 0) return true;
   const hid_t before = hdf5_open(f->path, status);
   if (before < 0) return false;
   bool taken = list_snapshots(f, before, mark, status) && check_grid(f, before, status);
-  for (size_t k = 0; taken && k < f->count; k++) taken = keep_snapshot(f, before, &f->snapshots[k], status);
+  for (size_t k = 0; taken && k < f->count; k++) taken = adopt_snapshot(f, before, &f->snapshots[k], status);
   return H5Fclose(before) >= 0 && taken;
 }
 
-/* The later files go once nothing refers to them any more. */
+/* Later files are removed after the index, so that the index refers to existing files at any time. */
 static bool start(struct fields *f, const struct fields_mark *mark, struct status *status)
 {
-  if (!file_make_directory(f->folder, status) || !take_up(f, mark, status) || !write_index(f, status) ||
+  if (!file_make_directory(f->folder, status) || !read_earlier(f, mark, status) || !write_index(f, status) ||
       !numbered_remove(f->folder, mark->count > 0 ? mark->step : 0, "h5", status) ||
       !xdmf_open(&f->xdmf, f->xdmf_path, &f->grid, status))
     return false;

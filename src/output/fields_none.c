@@ -1,4 +1,4 @@
-/* Fields in a build without HDF5. */
+/* fields.h in a build without HDF5. */
 #include "output/fields.h"
 
 static bool refuse(struct status *status)

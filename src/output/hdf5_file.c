@@ -2,7 +2,7 @@
 
 #include <errno.h>
 
-/* HDF5 tells errors by return values alone, and does nothing at the exit: of a file whose writes failed it would crash there. */
+/* Errors by return values only. No exit handler of HDF5: it crashes after failed writes. */
 static void start_hdf5(void)
 {
   H5dont_atexit();
@@ -40,7 +40,7 @@ bool hdf5_begin(struct hdf5_file *file, const char *path, struct status *status)
   return false;
 }
 
-/* HDF5 opened the temporary file by its path, so that this must still lead to the file that is renamed. */
+/* HDF5 opened the temporary file by path: the path must still refer to the file to be renamed. */
 bool hdf5_commit(struct hdf5_file *file, struct status *status)
 {
   struct replacement *place = &file->place;
@@ -61,7 +61,7 @@ void hdf5_abandon(struct hdf5_file *file)
 hid_t hdf5_open(const char *path, struct status *status)
 {
   start_hdf5();
-  FILE *plain = file_open_stream(path, status); /* tells what is no file, and why a file cannot be read */
+  FILE *plain = file_open_stream(path, status); /* reports missing and special files */
   if (!plain) return -1;
   fclose(plain);
   const hid_t handle = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);

@@ -17,8 +17,8 @@ char *numbered_path(const char *folder, int64_t step, const char *extension, str
   return file_join(folder, name, status);
 }
 
-/* True for a file of that extension from the step on, and for the temporary file of one of any step. */
-static bool is_to_go(const char *name, int64_t from, const char *extension)
+/* True for files of the extension from step `from` on, and for temporary files of any step. */
+static bool is_removable(const char *name, int64_t from, const char *extension)
 {
   size_t digits = 0;
   while (isdigit((unsigned char)name[digits])) digits++;
@@ -35,7 +35,7 @@ bool numbered_remove(const char *folder, int64_t from, const char *extension, st
   if (!listing) return errno == ENOENT || file_fail(status, "read folder", folder, errno);
   bool removed = true;
   for (struct dirent *entry; removed && (entry = readdir(listing));) {
-    if (!is_to_go(entry->d_name, from, extension)) continue;
+    if (!is_removable(entry->d_name, from, extension)) continue;
     char *path = file_join(folder, entry->d_name, status);
     removed = path && file_remove(path, status);
     free(path);

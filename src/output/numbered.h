@@ -9,11 +9,11 @@
 /* folder/NNNNNNNN.extension, released by free(); NULL when memory runs out. */
 char *numbered_path(const char *folder, int64_t step, const char *extension, struct status *status);
 
-/* Removes the files of that extension from a step on, and what an interrupted replacement left of any. A folder that does not
- * exist is fine. */
+/* Removes the files of the extension from step `from` on, and temporary files of interrupted replacements. A missing
+ * folder is no error. */
 bool numbered_remove(const char *folder, int64_t from, const char *extension, struct status *status);
 
-/* Removes all of that extension, and the folder unless something else is in it. */
+/* Removes all files of the extension, and the folder if empty. */
 bool numbered_remove_folder(const char *folder, const char *extension, struct status *status);
 
 #endif

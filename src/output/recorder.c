@@ -19,10 +19,10 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-/* What is recorded at regular steps. */
+/* An output at regular steps. */
 struct series {
   int64_t every;    /* 0: never */
-  int64_t recorded; /* the step last recorded, -1 before the first */
+  int64_t recorded; /* last recorded step; -1 before the first */
 };
 
 enum { CHECKPOINTS = 2 };
@@ -31,16 +31,16 @@ struct recorder {
   const struct scene *scene;
   char *case_path, *table_path, *frames_path, *snapshots_path, *summary_path, *checkpoint_path[CHECKPOINTS];
   char *directory;
-  int lock;          /* descriptor of the folder; -1: not open */
+  int lock;          /* descriptor of the locked folder; -1: not open */
   struct csv *table; /* particles.csv */
   struct fields *fields;
   struct series rows, frames, snapshots, checkpoints;
-  int next_checkpoint;  /* which of the two is written next */
+  int next_checkpoint;  /* index of the checkpoint to be written next */
   uint32_t fingerprint; /* of the case */
   double *ux, *uy;      /* fields of a frame; NULL without frames */
-  double *values;       /* of the discs of a frame; NULL where they are plain */
-  double start;         /* clock at step 0 of a run that was never interrupted */
-  double seconds;       /* spent on output */
+  double *values;       /* colour values of discs; NULL: plain discs */
+  double start;         /* clock at step 0, less interruptions */
+  double seconds;       /* time of output */
 };
 
 static bool series_is_due(const struct series *series, int64_t step, bool last)
@@ -79,7 +79,7 @@ static bool remove_earlier_run(const struct recorder *recorder, bool *replaced, 
          numbered_remove(recorder->frames_path, 0, "png", status);
 }
 
-/* Two runs in one folder would write over each other. Where a file system knows no locks, none is held. */
+/* Prevents two runs in one folder. No lock on file systems without locks. */
 static bool lock_folder(struct recorder *recorder, struct status *status)
 {
   recorder->lock = open(recorder->directory, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -148,7 +148,7 @@ static bool prepare_paths(struct recorder *recorder, const char *directory, stru
   return recorder->directory || status_fail(status, DELBM_FAILED, "out of memory: a path");
 }
 
-/* A recorder with its paths and memory, which has not touched the disk yet. */
+/* Paths and memory of a recorder, without access to the disk. */
 static bool create(struct recorder **recorder, const struct scene *scene, const char *directory, struct status *status)
 {
   *recorder = NULL;
@@ -179,7 +179,7 @@ static bool destroy_unless(bool good, struct recorder **recorder)
   return false;
 }
 
-/* What can fail without harm comes before an earlier run is removed. */
+/* The earlier run is removed after the checks. */
 static bool begin(struct recorder *recorder, bool *replaced, struct status *status)
 {
   if (!file_make_directory(recorder->directory, status) || !lock_folder(recorder, status) ||
@@ -197,7 +197,7 @@ bool recorder_open(struct recorder **recorder, const struct scene *scene, const 
   return destroy_unless(create(recorder, scene, directory, status) && begin(*recorder, replaced, status), recorder);
 }
 
-/* The newer of the good checkpoints, and why another was refused. */
+/* Index of the newer valid checkpoint; `refused`: error of an invalid checkpoint. */
 static bool choose_checkpoint(const struct recorder *recorder, int *chosen, struct checkpoint_head *head,
                               struct status *refused)
 {
@@ -221,7 +221,7 @@ static bool reopen_table(struct recorder *recorder, int64_t length, struct statu
   return csv_reopen(&recorder->table, recorder->table_path, &recorder->scene->units, length, status);
 }
 
-/* Also where no more snapshots are wanted: those that there are become one file at the end of the run. */
+/* Also without further snapshots: the earlier snapshots are joined at the end of the run. */
 static bool reopen_fields(struct recorder *recorder, int64_t step, int64_t count, struct status *status)
 {
   if (recorder->snapshots.every == 0 && (count == 0 || !FIELDS_SUPPORTED)) return true;
@@ -229,8 +229,8 @@ static bool reopen_fields(struct recorder *recorder, int64_t step, int64_t count
   return fields_open(&recorder->fields, recorder->scene, recorder->directory, &mark, status);
 }
 
-static bool take_up(struct recorder *recorder, struct simulation *simulation, struct resumption *resumption,
-                    struct status *status)
+static bool resume(struct recorder *recorder, struct simulation *simulation, struct resumption *resumption,
+                   struct status *status)
 {
   int chosen;
   struct checkpoint_head head;
@@ -264,8 +264,8 @@ bool recorder_resume(struct recorder **recorder, const struct scene *scene, cons
                      struct simulation *simulation, struct resumption *resumption, struct status *status)
 {
   *resumption = (struct resumption){0};
-  return destroy_unless(
-      create(recorder, scene, directory, status) && take_up(*recorder, simulation, resumption, status), recorder);
+  return destroy_unless(create(recorder, scene, directory, status) && resume(*recorder, simulation, resumption, status),
+                        recorder);
 }
 
 static int64_t earlier(int64_t a, int64_t b)
@@ -281,9 +281,9 @@ int64_t recorder_next(const struct recorder *recorder, int64_t step)
                  series_next(&recorder->checkpoints, step, end));
 }
 
-/* What the colours of the discs show, and the end of its scale, as of struct picture. The height at step 0 is that of the
- * case, so that a resumed run draws the same. */
-static double take_values(const struct recorder *recorder, const struct discs *discs)
+/* Sets the colour values of the discs; returns the end of the scale (struct picture). The height at step 0 comes
+ * from the case, so that a resumed run draws the same pictures. */
+static double set_values(const struct recorder *recorder, const struct discs *discs)
 {
   const struct scene *scene = recorder->scene;
   const enum frame_discs kind = scene->output.frames.discs;
@@ -313,7 +313,7 @@ static bool record_frame(struct recorder *recorder, struct simulation *simulatio
                             .quantity = scene->output.frames.quantity,
                             .maximum = scene->output.frames.maximum,
                             .values = recorder->values};
-  if (recorder->values) picture.values_end = take_values(recorder, picture.discs);
+  if (recorder->values) picture.values_end = set_values(recorder, picture.discs);
   bool written = picture_write(&picture, path, status);
   free(path);
   return written;
@@ -324,7 +324,7 @@ static bool write_checkpoint(struct recorder *recorder, struct simulation *simul
   struct run_record record = {.seconds = recorder_elapsed(recorder), .output = recorder->seconds};
   if (recorder->table && !csv_sync(recorder->table, &record.table_bytes, status)) return false;
   if (recorder->fields) record.snapshots = fields_count(recorder->fields);
-  if (!file_stays(recorder->lock, recorder->directory, status)) return false; /* right before the path is taken */
+  if (!file_stays(recorder->lock, recorder->directory, status)) return false; /* last check before the path is used */
   if (!checkpoint_write(recorder->checkpoint_path[recorder->next_checkpoint], recorder->fingerprint, simulation,
                         &record, status))
     return false;
@@ -333,7 +333,7 @@ static bool write_checkpoint(struct recorder *recorder, struct simulation *simul
   return true;
 }
 
-/* What fails in a folder that has gone fails for that reason, whatever the system's words are. */
+/* Replaces an error of the system by the reason that the folder was moved or removed, if so. */
 static bool explain(const struct recorder *recorder, bool good, struct status *status)
 {
   struct status other;
@@ -360,7 +360,7 @@ static bool record_due(struct recorder *recorder, struct simulation *simulation,
   bool snapshot = series_is_due(&recorder->snapshots, step, last);
   if (!rows && !frame && !snapshot && !last) return true;
   if (!file_stays(recorder->lock, recorder->directory, status)) return false;
-  /* a table refuses what is not finite by itself; a look at all cells costs more than its rows */
+  /* csv_write checks its rows by itself; a check of all cells costs more than the rows */
   if ((frame || snapshot || last) && !simulation_check(simulation, status)) return false;
   if (rows && !csv_write(recorder->table, step, simulation_discs(simulation), status)) return false;
   if (rows) recorder->rows.recorded = step;
@@ -369,7 +369,7 @@ static bool record_due(struct recorder *recorder, struct simulation *simulation,
   if (snapshot && !fields_write(recorder->fields, simulation, status)) return false;
   if (snapshot) recorder->snapshots.recorded = step;
   if (last && recorder->fields && !fields_join(recorder->fields, status)) return false;
-  /* without `every` there is a checkpoint only of an interrupted run, which has now ended */
+  /* without `every` a checkpoint exists only after an interruption and is obsolete at the end */
   return !last || recorder->checkpoints.every > 0 || remove_checkpoints(recorder, status);
 }
 

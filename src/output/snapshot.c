@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Elements of a chunk, about: half a megabyte. Deflate at its fastest: higher levels cost more than they save. */
+/* Elements of a chunk, half a megabyte. Deflate level 1: higher levels cost more time for little space. */
 enum { CHUNK = 1 << 16, DEFLATE = 1 };
 
 void snapshot_name(char name[SNAPSHOT_NAME], int64_t step)
@@ -16,7 +16,7 @@ void snapshot_name(char name[SNAPSHOT_NAME], int64_t step)
   snprintf(name, SNAPSHOT_NAME, "%08" PRId64, step);
 }
 
-/* Whole numbers as an attribute. */
+/* Writes integers as an attribute. */
 static bool write_numbers(hid_t object, const char *name, int count, const int64_t *numbers)
 {
   const hsize_t size = (hsize_t)count;
@@ -63,17 +63,17 @@ bool snapshot_read_grid(hid_t root, const struct snapshot *snapshot, struct samp
   return read;
 }
 
-/* One value, or three, of each cell or point. */
+/* A data set: one or three values per cell or point. */
 struct set {
   const char *name;
   int rank;
   hsize_t size[3];
-  hid_t stored, held; /* types, in the file and in memory */
+  hid_t file_type, memory_type;
   const void *values;
   bool packed; /* deflated */
 };
 
-/* In chunks, since only these have checksums (Fletcher's): whole rows, or part of one if it is long. */
+/* In chunks, since HDF5 computes checksums (Fletcher-32) for chunks only: whole rows, or parts of a long row. */
 static bool arrange(hid_t properties, const struct set *set)
 {
   const hsize_t rows = set->size[0], row = set->rank > 1 ? set->size[1] : 1;
@@ -89,8 +89,8 @@ static bool write_set(hid_t group, const struct set *set)
   const hid_t space = H5Screate_simple(set->rank, set->size, NULL), properties = hdf5_timeless(H5P_DATASET_CREATE);
   const bool described = space >= 0 && properties >= 0 && arrange(properties, set);
   const hid_t made =
-      described ? H5Dcreate2(group, set->name, set->stored, space, H5P_DEFAULT, properties, H5P_DEFAULT) : -1;
-  const bool written = made >= 0 && H5Dwrite(made, set->held, H5S_ALL, H5S_ALL, H5P_DEFAULT, set->values) >= 0;
+      described ? H5Dcreate2(group, set->name, set->file_type, space, H5P_DEFAULT, properties, H5P_DEFAULT) : -1;
+  const bool written = made >= 0 && H5Dwrite(made, set->memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, set->values) >= 0;
   const bool closed = made >= 0 && H5Dclose(made) >= 0;
   if (properties >= 0) H5Pclose(properties);
   if (space >= 0) H5Sclose(space);
@@ -121,8 +121,8 @@ static bool write_cells(hid_t group, const struct sample_grid *grid, const struc
     const struct set set = {.name = all[k].name,
                             .rank = all[k].components > 1 ? 3 : 2,
                             .size = {ny, nx, (hsize_t)all[k].components},
-                            .stored = H5T_IEEE_F64LE,
-                            .held = H5T_NATIVE_DOUBLE,
+                            .file_type = H5T_IEEE_F64LE,
+                            .memory_type = H5T_NATIVE_DOUBLE,
                             .values = all[k].values,
                             .packed = true};
     if (!write_set(group, &set)) return false;
@@ -134,13 +134,13 @@ static bool write_points(hid_t snapshot, const struct points *points)
 {
   const hid_t group = create_group(snapshot, "discs");
   const hsize_t count = (hsize_t)points->count;
-  const hid_t real = H5T_IEEE_F64LE, held = H5T_NATIVE_DOUBLE;
+  const hid_t real = H5T_IEEE_F64LE, native = H5T_NATIVE_DOUBLE;
   const struct set sets[] = {{"id", 1, {count}, H5T_STD_I64LE, H5T_NATIVE_INT64, points->id, false},
-                             {"position", 2, {count, 3}, real, held, points->position, false},
-                             {"velocity", 2, {count, 3}, real, held, points->velocity, false},
-                             {"radius", 1, {count}, real, held, points->radius, false},
-                             {"angle", 1, {count}, real, held, points->angle, false},
-                             {"spin", 1, {count}, real, held, points->spin, false}};
+                             {"position", 2, {count, 3}, real, native, points->position, false},
+                             {"velocity", 2, {count, 3}, real, native, points->velocity, false},
+                             {"radius", 1, {count}, real, native, points->radius, false},
+                             {"angle", 1, {count}, real, native, points->angle, false},
+                             {"spin", 1, {count}, real, native, points->spin, false}};
   bool written = group >= 0;
   for (size_t k = 0; written && k < sizeof sets / sizeof sets[0]; k++) written = write_set(group, &sets[k]);
   return group >= 0 && H5Gclose(group) >= 0 && written;
@@ -157,7 +157,7 @@ bool snapshot_write(hid_t root, int64_t step, const struct sample_grid *grid, co
   return group >= 0 && H5Gclose(group) >= 0 && written;
 }
 
-/* What a check has found so far. */
+/* Context and results of a check. */
 struct check {
   const char *path;
   struct snapshot *snapshot;
@@ -177,7 +177,7 @@ static bool read_set(hid_t set, const char *name, const struct check *check)
   return read;
 }
 
-/* Reads a data set, or all within a group. */
+/* Reads a data set, or all data sets of a group. */
 static herr_t read_object(hid_t group, const char *name, const H5L_info_t *info, void *context)
 {
   (void)info;
@@ -204,7 +204,7 @@ bool snapshot_check(hid_t root, const char *path, struct snapshot *snapshot, str
   return read_object(root, name, NULL, &check) >= 0;
 }
 
-/* The bytes of a chunk, compressed as they are, from one data set to another. */
+/* Copies the compressed bytes of a chunk. */
 static bool copy_chunk(hid_t from, hid_t to, const hsize_t *at)
 {
   struct status ignored;
@@ -218,7 +218,7 @@ static bool copy_chunk(hid_t from, hid_t to, const hsize_t *at)
   return copied;
 }
 
-/* All chunks; a third index of cells and a second of points, their components, lie in one. */
+/* Copies all chunks. Components, the third index of cells and the second of points, are not divided. */
 static bool copy_chunks(hid_t from, hid_t to, hid_t space, hid_t properties)
 {
   hsize_t size[3] = {1, 1, 1}, chunk[3] = {1, 1, 1}, at[3] = {0};

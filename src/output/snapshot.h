@@ -1,4 +1,4 @@
-/* One snapshot as a group of an HDF5 file, named by its step in eight digits or more; fields.h says what is in it. */
+/* A snapshot as a group of an HDF5 file (content: fields.h). */
 #ifndef DELBM_OUTPUT_SNAPSHOT_H
 #define DELBM_OUTPUT_SNAPSHOT_H
 
@@ -15,19 +15,19 @@ struct snapshot {
 enum { SNAPSHOT_NAME = 32 };
 void snapshot_name(char name[SNAPSHOT_NAME], int64_t step);
 
-/* The grid of the samples, as attributes of the root. False, like the next two, when HDF5 fails. */
+/* The grid of the samples, as attributes of the root. These and the next two return false when HDF5 fails. */
 bool snapshot_write_grid(hid_t root, const int domain_size[2], const struct sample_grid *grid);
 bool snapshot_read_grid(hid_t root, const struct snapshot *snapshot, struct sample_grid *grid);
 
 bool snapshot_write(hid_t root, int64_t step, const struct sample_grid *grid, const struct sample *sample,
                     const struct points *points);
 
-/* Copies the snapshot of that step from one root to another, compressed as it is. In place of H5Ocopy, which crashes where a
- * write fails (HDF5 1.10.8). */
+/* Copies the snapshot of `step` from one root to another without decompression. In place of H5Ocopy, which crashes
+ * when a write fails (HDF5 1.10.8). */
 bool snapshot_copy(hid_t from, hid_t to, int64_t step);
 
-/* Reads all data of the snapshot of that step, which compares their checksums, and counts the points. Fails with the path, that
- * of the file, and the name of what is damaged or missing. */
+/* Reads all data of the snapshot of snapshot->step, so that HDF5 compares checksums; sets snapshot->points. A
+ * failure names `path`, the file, and the damaged or missing object. */
 bool snapshot_check(hid_t root, const char *path, struct snapshot *snapshot, struct status *status);
 
 #endif

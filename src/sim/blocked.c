@@ -1,3 +1,26 @@
+/* The sweep blocked in time: several steps of a row in one pass through memory.
+ *
+ * Wavefront. A row may advance to step s once the row and its two neighbours have completed step s - 1
+ * (populations.h: a step touches rows y - 1 .. y + 1 only). A wavefront passes over the rows with each step one row
+ * behind the step before, so a row is read from memory once per block of `depth` steps.
+ *
+ * Tiles. Rows are divided into tiles of `width` cells, each step shifted by one cell to the left of the step before,
+ * so that the working set of a wavefront, depth + 2 rows of a tile, fits the nearest cache. With periodic x the
+ * first tile recedes from the left side by a cell each step; the last tile adds these cells.
+ *
+ * Slabs. Each thread has a slab of rows. Within a block a slab recedes by a row each step from adjacent slabs (not
+ * from walls); after a barrier, the missing triangle around each border, which grows by a row on both sides each
+ * step, is swept. With ny/threads >= 2 depth rows the triangles do not overlap.
+ *
+ * Races. Between two barriers a thread writes rows of its own slab or triangle; the dependence of a step on the step
+ * before in neighbouring rows is satisfied within the slab, or by the barrier. Each row has its own parity within a
+ * block. Every row is updated once per step, by the arithmetic of the unblocked sweep: the bits are independent of
+ * depth, width and threads.
+ *
+ * Discs. The rows of discs and three more on each side (the disc rows) are excluded; the other rows (the free rows)
+ * advance through the whole block first and recede from the disc rows by a row each step, as slabs do from each
+ * other. Then the disc rows are swept step by step, in all four stages, and grow by a row each step. Discs below
+ * Mach 0.6 move by at most 0.35 rows a step and so remain within the disc rows. */
 #include "sim/blocked.h"
 
 #include <omp.h>
@@ -7,13 +30,13 @@ int blocked_deepest(int ny, int threads)
   return ny / threads / 2;
 }
 
-/* Rows first .. end - 1 and what lies beyond them: nothing (a wall), or the next slab. */
+/* Rows first .. end - 1; open: adjacent to another slab, else to a wall. */
 struct slab {
   int first, end;
   bool open_below, open_above;
 };
 
-/* Slab `number` of `count` into which another is cut. */
+/* Slab `number` of `count` equal parts of `whole`. */
 static struct slab slab_of(const struct slab *whole, int number, int count)
 {
   const int64_t rows = whole->end - whole->first;
@@ -23,11 +46,11 @@ static struct slab slab_of(const struct slab *whole, int number, int count)
                        .open_above = whole->open_above || number + 1 < count};
 }
 
-/* Step s of the block in cells x0 .. x1 - 1 of row y, which may lie beyond a periodic side. */
+/* Step s of the block in cells x0 .. x1 - 1 of row y; y may lie beyond a periodic side. */
 static void update(struct flow *f, int s, int y, int x0, int x1)
 {
   if (x0 >= x1) return;
-  struct populations p = f->populations; /* the parity of a block's steps differs from row to row */
+  struct populations p = f->populations; /* with the parity of step s */
   p.parity ^= s & 1;
   y = populations_row(&p, y);
   void *a[Q];
@@ -42,13 +65,13 @@ static int clamp(int at, int low, int high)
   return at < low ? low : at > high ? high : at;
 }
 
-/* Step s of tile number k (of the last, if `last`) in row y. */
+/* Step s of tile k in row y; `last`: the tile is the last of the row. */
 static void update_tile(struct flow *f, int y, int s, int k, int width, bool last)
 {
   const int nx = f->populations.nx;
   const bool ring = f->scene->domain.side[SIDE_LEFT].type == SIDE_PERIODIC;
-  const bool whole = k == 0 && last;       /* the tile is the row: nothing to retreat from */
-  const int left = ring && !whole ? s : 0; /* where the first tile begins */
+  const bool whole = k == 0 && last;       /* one tile: the row is not divided */
+  const int left = ring && !whole ? s : 0; /* start of the first tile */
   const int x0 = k == 0 ? left : clamp(k * width - s, left, nx);
   const int x1 = last ? nx : clamp((k + 1) * width - s, left, nx);
   update(f, s, y, x0, x1);
@@ -68,14 +91,14 @@ static void sweep_slab(struct flow *f, const struct slab *slab, int width, int s
       }
 }
 
-/* What slabs left out on both sides of the border below row `border`. */
+/* The triangle around the border below row `border`. */
 static void sweep_border(struct flow *f, int border, int steps)
 {
   for (int s = 1; s < steps; s++)
     for (int y = border - s; y < border + s; y++) update(f, s, y, 0, f->populations.nx);
 }
 
-/* A block in tiles of this width. */
+/* One block, in tiles of `width`. */
 static void sweep_block(struct flow *f, int width, int steps)
 {
   const int ny = f->populations.ny;
@@ -93,20 +116,21 @@ static void sweep_block(struct flow *f, int width, int steps)
 void stage_sweep_blocked(struct flow *f, const struct blocking *blocking, int steps)
 {
   const int nx = f->populations.nx;
-  const bool tiled = blocking->width > 0 && blocking->width < nx && steps <= nx; /* a retreat round the box is none */
+  const bool tiled =
+      blocking->width > 0 && blocking->width < nx && steps <= nx; /* a tile recedes by at most nx cells */
   const int whole = !tiled ? steps : flow_terms(f, steps - 1) == SWEEP_FORCE_AND_SUM;
   if (steps > whole) sweep_block(f, blocking->width, steps - whole);
   if (whole > 0) sweep_block(f, nx, whole);
 }
 
-/* Rows that may go ahead by `steps` must leave one slab twice as high. */
+/* Free rows must contain one slab of 2 steps rows. */
 static bool is_high_enough(int rows, int steps)
 {
   return rows >= 2 * steps;
 }
 
-/* The rows of all discs and `margin` more on each side. Across a periodic side they are counted on from the first disc,
- * which is sensible as long as they span less than half of the box. */
+/* The rows of all discs and `margin` more on each side. Across a periodic side the numbers continue from the first
+ * disc; valid for a span below half of the box. */
 static struct rows rows_of_discs(const struct scene *scene, const struct occupation *o, int margin)
 {
   const int ny = scene->domain.size[1], half = ny / 2;
@@ -141,18 +165,18 @@ bool blocked_discs_within(const struct scene *scene, const struct occupation *o,
 {
   const int ny = scene->domain.size[1];
   const struct rows discs = rows_of_discs(scene, o, 1);
-  int shift = 0; /* both may be counted from either side of a periodic one */
+  int shift = 0; /* across a periodic side the numbers may differ by ny */
   if (scene_is_periodic(scene, 1)) shift = discs.first < rows->first ? ny : discs.end > rows->end ? -ny : 0;
   const bool below = discs.first + shift >= rows->first || (rows->first == 0 && !scene_is_periodic(scene, 1));
   const bool above = discs.end + shift <= rows->end || (rows->end == ny && !scene_is_periodic(scene, 1));
   return below && above;
 }
 
-/* The slabs of one interval of rows; whoever has one. */
+/* Sweeps an interval of free rows, in slabs of at least 2 steps rows, at most one per thread. */
 static void sweep_interval(struct flow *f, const struct slab *interval, int steps)
 {
   const int threads = omp_get_num_threads(), thread = omp_get_thread_num();
-  const int most = (interval->end - interval->first) / (2 * steps), count = most < threads ? most : threads;
+  const int max = (interval->end - interval->first) / (2 * steps), count = max < threads ? max : threads;
   struct slab slab = {0};
   if (thread < count) {
     slab = slab_of(interval, thread, count);

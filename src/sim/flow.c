@@ -1,3 +1,25 @@
+/* The sweep: collision, immersed boundary and streaming of all cells, the links to the sides, and the sums of the
+ * next exchange.
+ *
+ * Order. Each thread sweeps a contiguous range of rows, from the lowest up. Per row: the populations of the sides to
+ * be written after the row are prefetched; the kernel collides and streams the row in place; the links of the row's
+ * edge cells write what the edge receives in the next step (fluid/boundary.c). No branches per cell: a row without
+ * discs uses the kernel without discs; in a row with discs the runs of the occupation are first painted into the
+ * thread's solid_row, as the weight B and the sum of w_p B v_p of each cell. Storage is the array of populations
+ * (fluid/populations.h), nx * ny cells of nine planes, and one solid_row per thread.
+ *
+ * Sums. With discs the moments of row y, as input of the next collision, are summed for the next exchange
+ * (coupling/exchange.c) once rows y - 1, y and y + 1 are swept: one row behind the sweep, while the row is in cache.
+ * The first and the last row of a thread depend on rows of other threads and are summed after a barrier.
+ *
+ * Races. In a step a cell reads and writes nine slots that belong to the cell alone, in either parity; each link
+ * writes a slot of its own (fluid/boundary.c). So rows are independent, and the bits are independent of their order
+ * and of the threads. Sums per row are written by one thread and added by the exchange in a fixed order; likewise
+ * the momenta of the rows, which the last step of an interval of zero_flux sums (zero_flux.h).
+ *
+ * Initial state: f_i = f_i^eq(rho, j) plus the viscous stress at first order in the gradient, in moments
+ *   p_xx = p_xx^eq - 2 rho/(3 s_nu) (du_x/dx - du_y/dy),  p_xy = p_xy^eq - rho/(3 s_nu) (du_x/dy + du_y/dx),
+ * with j = rho (u - g/2) - z/2 for the body force rho g + z. */
 #include "sim/flow.h"
 
 #include "base/memory.h"
@@ -45,7 +67,7 @@ bool flow_prepare(struct flow *f, int threads, struct status *status)
   return true;
 }
 
-/* Equilibrium, and the stress that goes with the gradient, as deviations. */
+/* Stores the initial state of a cell as deviations g_i = f_i - w_i. */
 static void set_state(struct flow *f, int x, int y, const struct flow_state *state)
 {
   struct populations *p = &f->populations;
@@ -68,7 +90,7 @@ static struct flow_state at_rest(const void *context, int x, int y)
   return (struct flow_state){.density = 1};
 }
 
-/* What a caller writes, row by row from the bottom. */
+/* Fields of a caller, row by row from the bottom. */
 struct flow_arrays {
   const double *density, *ux, *uy;
   int nx;
@@ -87,12 +109,12 @@ static double solid_at(const struct flow *f, const void *row, int x)
 }
 
 /* Weight B of the discs in a cell, and sum over owners of w_p B v_p. */
-struct covered {
+struct solid_cell {
   double b, bv[2];
 };
 
-/* (1 - B) of the state, and B of the discs' motion: that of a rigid body is without stress. */
-static struct flow_state mixed(struct flow_state state, const struct covered *c)
+/* (1 - B) of the state plus the discs' motion at the weight B; rigid motion is without stress. */
+static struct flow_state mixed(struct flow_state state, const struct solid_cell *c)
 {
   for (int axis = 0; axis < 2; axis++) {
     state.velocity[axis] = (1 - c->b) * state.velocity[axis] + c->bv[axis];
@@ -101,7 +123,7 @@ static struct flow_state mixed(struct flow_state state, const struct covered *c)
   return state;
 }
 
-/* Sets all cells of row y, or only those in which discs move. */
+/* Sets all cells of row y, or with `all` false only cells with moving discs. */
 static void set_row(struct flow *f, flow_initial *initial, const void *context, bool all, int y,
                     const struct sweep_discs *discs)
 {
@@ -112,11 +134,11 @@ static void set_row(struct flow *f, flow_initial *initial, const void *context, 
   if (count > 0)
     f->kernel->paint(row, nx, runs, count, occupation_band(discs->now, y)->owner_weight, discs->exchange->surface);
   for (int x = 0; (all || count > 0) && x < nx; x++) {
-    struct covered covered = {0};
+    struct solid_cell solid = {0};
     if (count > 0)
-      covered = (struct covered){solid_at(f, row->b, x), {solid_at(f, row->bvx, x), solid_at(f, row->bvy, x)}};
-    if (!all && covered.bv[0] == 0 && covered.bv[1] == 0) continue;
-    const struct flow_state state = mixed(initial(context, x, y), &covered);
+      solid = (struct solid_cell){solid_at(f, row->b, x), {solid_at(f, row->bvx, x), solid_at(f, row->bvy, x)}};
+    if (!all && solid.bv[0] == 0 && solid.bv[1] == 0) continue;
+    const struct flow_state state = mixed(initial(context, x, y), &solid);
     set_state(f, x, y, &state);
   }
 }
@@ -133,7 +155,7 @@ void flow_set(struct flow *f, const double *density, const double *ux, const dou
               const struct sweep_discs *discs)
 {
   const struct flow_arrays arrays = {density, ux, uy, f->populations.nx};
-  f->populations.parity = 0; /* the one in which no cell reads ghosts */
+  f->populations.parity = 0; /* in which no cell reads ghosts */
   for (int y = 0; y < f->populations.ny; y++) set_row(f, at_arrays, &arrays, true, y, discs);
   boundary_reset(&f->boundary, &f->populations);
 }
@@ -180,7 +202,7 @@ static void sweep_row_at(struct flow *f, int y, const struct sweep_discs *discs)
   f->kernel->discs[f->scene->coupling.form][f->adaptive][terms](a, nx, &f->constants, solid, momentum);
 }
 
-/* Mean momentum of a cell; rows are added from the lowest up. */
+/* Mean momentum of a cell; rows added from the lowest up. */
 static void mean_momentum(const struct flow *f, double mean[2])
 {
   const double cells = (double)f->populations.nx * f->populations.ny;
@@ -203,8 +225,8 @@ void flow_advance(struct flow *f, int steps)
   z->phase = 0;
 }
 
-/* Takes the moments of row y, about to be collided in the state `p`, for the discs that cover it. */
-static void take_sums(const struct flow *f, const struct populations *p, struct occupation *o, int y)
+/* Sums the moments of row y before its collision in the state `p`, per run of each disc in the row. */
+static void sum_moments(const struct flow *f, const struct populations *p, struct occupation *o, int y)
 {
   const struct band *band = occupation_band(o, y);
   const size_t first = band->row_start[y % BAND_ROWS], end = band->row_end[y % BAND_ROWS];
@@ -217,13 +239,13 @@ static void take_sums(const struct flow *f, const struct populations *p, struct 
 void stage_first_sums(struct flow *f, struct occupation *o)
 {
 #pragma omp for schedule(static)
-  for (int y = 0; y < f->populations.ny; y++) take_sums(f, &f->populations, o, y);
+  for (int y = 0; y < f->populations.ny; y++) sum_moments(f, &f->populations, o, y);
 }
 
 void stage_sweep(struct flow *f, const struct rows *rows, const struct sweep_discs *discs)
 {
   struct populations *p = &f->populations;
-  struct populations after = *p; /* the same populations, as the next step will read them */
+  struct populations after = *p; /* the same storage, with the parity of the next step */
   const int64_t thread = omp_get_thread_num(), threads = omp_get_num_threads(), count = rows->end - rows->first;
   const int first = rows->first + (int)(count * thread / threads);
   const int end = rows->first + (int)(count * (thread + 1) / threads);
@@ -233,12 +255,12 @@ void stage_sweep(struct flow *f, const struct rows *rows, const struct sweep_dis
     boundary_prefetch(p, y);
     sweep_row_at(f, y, discs);
     boundary_after(&f->boundary, p, y, 0, p->nx);
-    if (discs->next && k > first + 1) take_sums(f, &after, discs->next, populations_row(p, k - 1));
+    if (discs->next && k > first + 1) sum_moments(f, &after, discs->next, populations_row(p, k - 1));
   }
 #pragma omp barrier
-  /* the ends of a thread's rows wait for their neighbours, which are another thread's */
-  if (discs->next && first < end) take_sums(f, &after, discs->next, populations_row(p, first));
-  if (discs->next && first < end - 1) take_sums(f, &after, discs->next, populations_row(p, end - 1));
+  /* first and last row: their neighbours belong to other threads */
+  if (discs->next && first < end) sum_moments(f, &after, discs->next, populations_row(p, first));
+  if (discs->next && first < end - 1) sum_moments(f, &after, discs->next, populations_row(p, end - 1));
 #pragma omp barrier
 #pragma omp single
   {

@@ -12,7 +12,7 @@ static double into_box(const struct scene *scene, int axis, double at)
   return at >= size ? at - size : at;
 }
 
-/* New velocity and place. */
+/* Sets the new velocity and position. */
 static void move_disc(const struct contacts *c, struct exchange *e, struct discs *d, size_t i)
 {
   exchange_finish(e, d, i);
@@ -26,12 +26,11 @@ static void move_disc(const struct contacts *c, struct exchange *e, struct discs
 
 static bool too_fast(const struct discs *d, size_t i)
 {
-  const double left =
-      diagnostics_speed_limit - fabs(d->omega[i]) * d->radius[i]; /* for the centre; not finite: too fast */
-  return !(left >= 0 && d->vx[i] * d->vx[i] + d->vy[i] * d->vy[i] <= left * left);
+  const double max = diagnostics_speed_limit - fabs(d->omega[i]) * d->radius[i]; /* of the centre; NAN: too fast */
+  return !(max >= 0 && d->vx[i] * d->vx[i] + d->vy[i] * d->vy[i] <= max * max);
 }
 
-/* Beyond a side, which holds free discs back as a wall does unless they are too heavy or too fast for it. */
+/* True for the centre of a free disc beyond a side: its weight or speed is too large for the contact stiffness. */
 static bool has_left(const struct scene *scene, const struct discs *d, size_t i)
 {
   const int *size = scene->domain.size;
@@ -39,7 +38,7 @@ static bool has_left(const struct scene *scene, const struct discs *d, size_t i)
   return d->motion[i] == DISC_FREE && !inside;
 }
 
-/* False, with the reason, if the disc that came from there cannot go on. */
+/* Fails if disc i, previously at `from`, is too fast or outside of the box. */
 static bool check_disc(const struct scene *scene, const struct discs *d, size_t i, int64_t step, const double from[2],
                        struct status *status)
 {

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 
-/* In the order of trial. Two rounds: the first block of a depth may find its memory cold. */
+/* In the order of trial. Two rounds: in the first block of a depth the cache may be cold. */
 static const struct blocking candidates[] = {{1, 0}, {4, 0}, {8, 0}, {16, 0}, {32, 0}, {16, 1024}, {16, 512}};
 enum { CANDIDATES = sizeof candidates / sizeof candidates[0], ROUNDS = 2 };
 
@@ -12,7 +12,7 @@ static bool is_possible(const struct tuning *t, const struct blocking *blocking)
   return blocking->depth <= t->deepest && blocking->width < t->widest;
 }
 
-/* The next trial that this box allows. */
+/* Advances to the next possible trial. */
 static void skip_impossible(struct tuning *t)
 {
   while (t->trial < CANDIDATES * ROUNDS && !is_possible(t, &candidates[t->trial % CANDIDATES])) t->trial++;
@@ -23,7 +23,7 @@ void tuning_start(struct tuning *t, const struct scene *scene, int threads)
 {
   *t = (struct tuning){.best = {.depth = 1}, .settled = true, .best_time = INFINITY};
   const int interval = zero_flux_create(scene).interval;
-  if (scene->particles.count > 0) { /* where and how deep depends on where the discs are */
+  if (scene->particles.count > 0) { /* no trials: the free rows change with the discs */
     t->best.depth = scene->run.plan.depth > 0 ? scene->run.plan.depth : BLOCKED_AHEAD;
     if (interval > 0 && t->best.depth > interval) t->best.depth = interval;
     return;

@@ -4,10 +4,10 @@
 
 static const double acceleration_gain = 1.0 / 4, momentum_gain = 1.0 / 16;
 
-/* By which a load that begins or ends accelerates the fluid in one interval at most, cells/step. */
+/* Maximum change of the fluid velocity in one interval by the start or end of a load, cells/step. */
 static const double max_change = 0.01;
 
-/* Largest load along an axis: all that body forces and the weight of free discs can do, per cell. */
+/* Upper bound of the load along an axis per cell: body force and weight of free discs. */
 static double max_load(const struct scene *scene, int axis)
 {
   double buoyant_mass = 0;
@@ -44,8 +44,8 @@ void zero_flux_start(struct zero_flux *z, const double load[2], double uniform[2
 void zero_flux_update(struct zero_flux *z, const double mean[2], const double load[2], double uniform[2])
 {
   for (int axis = 0; axis < 2; axis++) {
-    const double seen = acceleration_gain * (mean[axis] - z->mean_momentum[axis]) + momentum_gain * mean[axis];
-    if (z->closed[axis]) uniform[axis] -= seen / z->interval + (load[axis] - z->load[axis]);
+    const double feedback = acceleration_gain * (mean[axis] - z->mean_momentum[axis]) + momentum_gain * mean[axis];
+    if (z->closed[axis]) uniform[axis] -= feedback / z->interval + (load[axis] - z->load[axis]);
     z->mean_momentum[axis] = mean[axis];
     z->load[axis] = load[axis];
   }
