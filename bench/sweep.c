@@ -234,7 +234,7 @@ static bool verify_collisions(const struct sweep_kernel *kernel, struct status *
 {
   static const enum way ways[] = {IN_PLACE, TWO_ARRAYS, BLOCKED};
   static const enum accuracy_operator operators[] = {OPERATOR_BGK, OPERATOR_TRT, OPERATOR_MRT, OPERATOR_ADAPTIVE};
-  const int deepest = blocked_deepest(SMALL_Y, omp_get_max_threads());
+  const int deepest = blocked_max_depth(SMALL_Y, omp_get_max_threads());
   const struct blocking blocking = {deepest < 4 ? 1 : 4, 0};
   const struct window whole = {0, 0, SMALL_X, SMALL_Y};
   bool ok = true;
@@ -281,7 +281,7 @@ static bool comparison_create(struct comparison *c, const struct sweep_kernel *k
                               struct status *status)
 {
   static const enum way ways[] = {[DEFAULT] = IN_PLACE, [CLASSIC] = TWO_ARRAYS, [BARE] = PLAIN, [CONSTANT] = IN_PLACE};
-  const int deepest = blocked_deepest(size, omp_get_max_threads());
+  const int deepest = blocked_max_depth(size, omp_get_max_threads());
   *c = (struct comparison){.kernel = kernel,
                            .size = size,
                            .adaptive = periodic_box(size, size, kernel, OPERATOR_ADAPTIVE),

@@ -81,7 +81,7 @@ Test(blocked, any_depth_width_and_number_of_threads_gives_the_bits_of_single_ste
         for (size_t w = 0; w < sizeof widths / sizeof widths[0]; w++)
           for (size_t t = 0; t < sizeof threads / sizeof threads[0]; t++) {
             const struct blocking blocking = {.depth = depths[d], .width = widths[w]};
-            if (blocking.depth > blocked_deepest(NY, threads[t])) continue;
+            if (blocking.depth > blocked_max_depth(NY, threads[t])) continue;
             populations_after(&scene, &blocking, threads[t], obtained);
             cr_expect_eq(memcmp(expected, obtained, sizeof expected), 0,
                          "sides %d, way %d, depth %d, width %d, threads %d", sides, way, depths[d], widths[w],

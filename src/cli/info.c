@@ -243,7 +243,7 @@ static void print_plan(const struct scene *scene)
 {
   struct tuning tuning;
   tuning_start(&tuning, scene, threads_for(scene_cells(scene)));
-  if (!tuning.settled)
+  if (!tuning.decided)
     printf("blocking     in time, depth by trial in the first steps (run.json has it); fix it by --plan\n");
   else if (tuning.best.depth <= 1)
     printf("blocking     off\n");

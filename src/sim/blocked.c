@@ -25,7 +25,7 @@
 
 #include <omp.h>
 
-int blocked_deepest(int ny, int threads)
+int blocked_max_depth(int ny, int threads)
 {
   return ny / threads / 2;
 }
@@ -144,24 +144,24 @@ static struct rows rows_of_discs(const struct scene *scene, const struct occupat
   return (struct rows){rows.first - margin, rows.end + margin};
 }
 
-bool blocked_near(const struct scene *scene, const struct occupation *now, int steps, struct near_rows *near)
+bool disc_rows_find(const struct scene *scene, const struct occupation *now, int steps, struct disc_rows *r)
 {
   const int ny = scene->domain.size[1];
-  *near = (struct near_rows){.rows = rows_of_discs(scene, now, 3), .grow_below = true, .grow_above = true};
-  if (scene_is_periodic(scene, 1)) return near->rows.end - near->rows.first + 4 * steps <= ny / 2;
-  near->grow_below = is_high_enough(near->rows.first, steps);
-  near->grow_above = is_high_enough(ny - near->rows.end, steps);
-  if (!near->grow_below) near->rows.first = 0;
-  if (!near->grow_above) near->rows.end = ny;
-  return near->grow_below || near->grow_above;
+  *r = (struct disc_rows){.rows = rows_of_discs(scene, now, 3), .grow_below = true, .grow_above = true};
+  if (scene_is_periodic(scene, 1)) return r->rows.end - r->rows.first + 4 * steps <= ny / 2;
+  r->grow_below = is_high_enough(r->rows.first, steps);
+  r->grow_above = is_high_enough(ny - r->rows.end, steps);
+  if (!r->grow_below) r->rows.first = 0;
+  if (!r->grow_above) r->rows.end = ny;
+  return r->grow_below || r->grow_above;
 }
 
-struct rows blocked_near_at(const struct near_rows *near, int s)
+struct rows disc_rows_at(const struct disc_rows *r, int s)
 {
-  return (struct rows){near->rows.first - (near->grow_below ? s : 0), near->rows.end + (near->grow_above ? s : 0)};
+  return (struct rows){r->rows.first - (r->grow_below ? s : 0), r->rows.end + (r->grow_above ? s : 0)};
 }
 
-bool blocked_discs_within(const struct scene *scene, const struct occupation *o, const struct rows *rows)
+bool rows_contain_discs(const struct scene *scene, const struct occupation *o, const struct rows *rows)
 {
   const int ny = scene->domain.size[1];
   const struct rows discs = rows_of_discs(scene, o, 1);
@@ -187,13 +187,13 @@ static void sweep_interval(struct flow *f, const struct slab *interval, int step
 #pragma omp barrier
 }
 
-void stage_sweep_ahead(struct flow *f, const struct near_rows *near, int steps)
+void stage_sweep_free_rows(struct flow *f, const struct disc_rows *r, int steps)
 {
-  const int ny = f->populations.ny, first = near->rows.first, end = near->rows.end;
+  const int ny = f->populations.ny, first = r->rows.first, end = r->rows.end;
   if (f->populations.periodic_y) {
     sweep_interval(f, &(struct slab){end, first + ny, .open_below = true, .open_above = true}, steps);
     return;
   }
-  if (near->grow_below) sweep_interval(f, &(struct slab){0, first, .open_above = true}, steps);
-  if (near->grow_above) sweep_interval(f, &(struct slab){end, ny, .open_below = true}, steps);
+  if (r->grow_below) sweep_interval(f, &(struct slab){0, first, .open_above = true}, steps);
+  if (r->grow_above) sweep_interval(f, &(struct slab){end, ny, .open_below = true}, steps);
 }

@@ -14,7 +14,7 @@
  * take_first_sums compute the occupation and sums that a sweep would have left.
  *
  * Blocking in time (blocked.h). Without discs, blocks of several steps run in one pass through memory. With discs, a
- * block advances first the rows that no disc can reach within its steps, then the near rows step by step. A failure
+ * block advances first the rows that no disc can reach within its steps, then the disc rows step by step. A failure
  * within such a block leaves rows at different steps: block_incomplete then excludes sums over all rows.
  *
  * State. The state of a checkpoint is the fluid, the discs, and what exchange and contacts store between steps;
@@ -49,7 +49,7 @@ struct simulation {
   int threads; /* of the parallel region */
   double initial_momentum[2];
   double max_mach;
-  bool discs_left_rows;  /* flag of team.h: a disc has left the near rows of a block */
+  bool discs_left_rows;  /* flag of team.h: a disc has left the disc rows of a block */
   bool block_incomplete; /* rows are at different steps after a failure within a block */
 };
 
@@ -168,7 +168,7 @@ static bool discs_stay_within(struct simulation *s, const struct occupation *nex
   if (rows->end - rows->first == s->scene->domain.size[1]) return true;
 #pragma omp single
   {
-    if (!blocked_discs_within(s->scene, next, rows)) {
+    if (!rows_contain_discs(s->scene, next, rows)) {
       struct status status;
       status_fail(&status, DELBM_FAILED, "diverged at step %lld: a disc moved by more than a cell in one step",
                   (long long)s->step);
@@ -245,7 +245,7 @@ static void run_blocks(struct simulation *s, int64_t steps)
     const int64_t left = zero_flux_steps_left(&s->flow.zero_flux, end - s->step);
     const struct blocking blocking = tuning_next(&s->tuning, left);
     const int64_t blocks = (left + blocking.depth - 1) / blocking.depth;
-    const int length = s->tuning.settled ? (int)((left + blocks - 1) / blocks) : blocking.depth;
+    const int length = s->tuning.decided ? (int)((left + blocks - 1) / blocks) : blocking.depth;
     const int block = length < left ? length : (int)left;
     const double begun = clock_now();
 #pragma omp parallel num_threads(s->threads)
@@ -277,16 +277,16 @@ static void run_single_steps(struct simulation *s, int64_t steps)
   }
 }
 
-/* A block with discs: first all steps of the rows out of reach of discs, then the near rows step by step. */
-static void run_near_block(struct simulation *s, const struct near_rows *near, int steps)
+/* A block with discs: first all steps of the free rows, then the disc rows step by step. */
+static void run_disc_block(struct simulation *s, const struct disc_rows *disc_rows, int steps)
 {
 #pragma omp parallel num_threads(s->threads)
   {
     double since = clock_now();
-    stage_sweep_ahead(&s->flow, near, steps);
+    stage_sweep_free_rows(&s->flow, disc_rows, steps);
     add_time(s, STAGE_SWEEP, &since);
     for (int k = 0; k < steps; k++) {
-      const struct rows rows = blocked_near_at(near, k);
+      const struct rows rows = disc_rows_at(disc_rows, k);
       if (!step(s, &rows, &since)) break;
       count_step(s);
     }
@@ -294,16 +294,16 @@ static void run_near_block(struct simulation *s, const struct near_rows *near, i
   s->block_incomplete = s->team.failed;
 }
 
-/* Steps of a scene with discs, in blocks where enough rows are out of their reach, else without blocking. */
-static void run_near_blocks(struct simulation *s, int64_t steps)
+/* Steps of a scene with discs, in blocks where enough rows are free, else without blocking. */
+static void run_disc_blocks(struct simulation *s, int64_t steps)
 {
   const int64_t end = s->step + steps;
   while (s->step < end && !s->team.failed) {
     const int64_t left = zero_flux_steps_left(&s->flow.zero_flux, end - s->step);
     const int64_t depth = s->tuning.best.depth, length = depth < left ? depth : left;
-    struct near_rows near;
-    if (length > 1 && blocked_near(s->scene, present(s), (int)length, &near))
-      run_near_block(s, &near, (int)length);
+    struct disc_rows disc_rows;
+    if (length > 1 && disc_rows_find(s->scene, present(s), (int)length, &disc_rows))
+      run_disc_block(s, &disc_rows, (int)length);
     else
       run_single_steps(s, length);
   }
@@ -311,11 +311,11 @@ static void run_near_blocks(struct simulation *s, int64_t steps)
 
 static void run_steps(struct simulation *s, int64_t steps)
 {
-  const bool blocked = !s->tuning.settled || s->tuning.best.depth > 1;
+  const bool blocked = !s->tuning.decided || s->tuning.best.depth > 1;
   if (!blocked)
     run_single_steps(s, steps);
   else if (s->stages.exchange)
-    run_near_blocks(s, steps);
+    run_disc_blocks(s, steps);
   else
     run_blocks(s, steps);
 }

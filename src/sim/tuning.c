@@ -9,46 +9,46 @@ enum { CANDIDATES = sizeof candidates / sizeof candidates[0], ROUNDS = 2 };
 
 static bool is_possible(const struct tuning *t, const struct blocking *blocking)
 {
-  return blocking->depth <= t->deepest && blocking->width < t->widest;
+  return blocking->depth <= t->max_depth && blocking->width < t->max_width;
 }
 
 /* Advances to the next possible trial. */
 static void skip_impossible(struct tuning *t)
 {
   while (t->trial < CANDIDATES * ROUNDS && !is_possible(t, &candidates[t->trial % CANDIDATES])) t->trial++;
-  t->settled = t->trial >= CANDIDATES * ROUNDS;
+  t->decided = t->trial >= CANDIDATES * ROUNDS;
 }
 
 void tuning_start(struct tuning *t, const struct scene *scene, int threads)
 {
-  *t = (struct tuning){.best = {.depth = 1}, .settled = true, .best_time = INFINITY};
+  *t = (struct tuning){.best = {.depth = 1}, .decided = true, .best_time = INFINITY};
   const int interval = zero_flux_create(scene).interval;
   if (scene->particles.count > 0) { /* no trials: the free rows change with the discs */
-    t->best.depth = scene->run.plan.depth > 0 ? scene->run.plan.depth : BLOCKED_AHEAD;
+    t->best.depth = scene->run.plan.depth > 0 ? scene->run.plan.depth : BLOCKED_DEPTH;
     if (interval > 0 && t->best.depth > interval) t->best.depth = interval;
     return;
   }
-  t->widest = scene->domain.size[0];
-  t->deepest = blocked_deepest(scene->domain.size[1], threads);
-  if (interval > 0 && t->deepest > interval) t->deepest = interval;
+  t->max_width = scene->domain.size[0];
+  t->max_depth = blocked_max_depth(scene->domain.size[1], threads);
+  if (interval > 0 && t->max_depth > interval) t->max_depth = interval;
   if (scene->run.plan.depth == 0) {
     skip_impossible(t);
     return;
   }
   t->best = (struct blocking){.depth = scene->run.plan.depth, .width = scene->run.plan.width};
-  if (t->best.depth > t->deepest) t->best.depth = t->deepest > 1 ? t->deepest : 1;
+  if (t->best.depth > t->max_depth) t->best.depth = t->max_depth > 1 ? t->max_depth : 1;
 }
 
 struct blocking tuning_next(const struct tuning *t, int64_t steps)
 {
-  if (t->settled) return t->best;
+  if (t->decided) return t->best;
   const struct blocking candidate = candidates[t->trial % CANDIDATES];
   return candidate.depth <= steps ? candidate : t->best;
 }
 
 void tuning_note(struct tuning *t, const struct blocking *blocking, double seconds_per_step)
 {
-  if (t->settled) return;
+  if (t->decided) return;
   const struct blocking candidate = candidates[t->trial % CANDIDATES];
   if (blocking->depth != candidate.depth || blocking->width != candidate.width) return;
   if (seconds_per_step < t->best_time) {

@@ -10,10 +10,10 @@ enum { TUNING_TEXT = 32 };
 
 struct tuning {
   struct blocking best;
-  bool settled;     /* no more trials */
+  bool decided;     /* no more trials */
   int trial;        /* number of the next trial */
-  int widest;       /* width of the box: tiles are narrower */
-  int deepest;      /* maximum depth, from box, threads and zero_flux */
+  int max_width;    /* width of the box: tiles are narrower */
+  int max_depth;    /* maximum depth, from box, threads and zero_flux */
   double best_time; /* seconds a step */
 };
 
