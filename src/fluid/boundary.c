@@ -124,7 +124,8 @@ void boundary_reset(struct boundary *b, const struct populations *p)
   }
 }
 
-/* slot[to + k] = a slot[from + k] + c[k] for k < n. Rows end in one cell at each side: no loop, which costs as much as the cell. */
+/* slot[to + k] = a slot[from + k] + c[k] for k < n. Without a loop for n = 1, the ends of rows: its cost is equal to the
+ * cost of the cell. */
 static void move(struct populations *p, size_t to, size_t from, int n, double a, const double *c)
 {
   if (p->precision == PRECISION_DOUBLE) {
