@@ -268,8 +268,7 @@ static void assign_bands(struct work *w)
 static double initial_of(const struct scene *scene)
 {
   double area = 0;
-  for (size_t i = 0; i < scene->particles.count; i++)
-    area += M_PI * scene->particles.discs[i].radius * scene->particles.discs[i].radius;
+  for (size_t i = 0; i < scene->particles.count; i++) area += disc_spec_area(&scene->particles.discs[i]);
   const double *region = scene->particles.fill.region;
   const bool filled = scene->particles.fill.present && scene->particles.listed == 0;
   return area / (filled ? (region[2] - region[0]) * (region[3] - region[1]) : (double)scene_cells(scene));

@@ -4,6 +4,7 @@
 #include "case/case_overlaps.h"
 #include "case/case_query.h"
 #include "case/case_units.h"
+#include "contact/law.h"
 #include "model/fill_grid.h"
 
 #include <math.h>
@@ -275,16 +276,23 @@ static void check_depth(struct draft *draft, const struct case_overlap *overlap)
         max_depth_in_disc, overlap->depth, overlap->b);
 }
 
-/* Largest overlap with a side of a disc at distance `gap` with this speed. Kinetic energy on arrival (drag coefficient
- * 1, mass of the fluid inside included) equals the energy of the contact, 2/5 force times depth at small overlap. */
+/* Largest overlap with a side of a disc at distance `gap` with this speed, at most its diameter. Kinetic energy on arrival
+ * (drag coefficient 1, mass of the fluid inside included) equals the energy of the contact's spring. */
 static double depth_of_impact(const struct draft *draft, const struct disc_spec *disc, double gap, double speed)
 {
   const struct scene *scene = &draft->scene;
   const double density = disc->density > 0 ? disc->density : draft->density;
-  const double mass = M_PI * disc->radius * disc->radius * (density + 1);
+  const double mass = disc_spec_area(disc) * (density + 1);
   const double arrival = speed * exp(-gap * disc->radius / mass);
-  const double spring = scene->contact.alpha * scene->contact.stiffness * 4 / 3 * sqrt(2 * disc->radius);
-  return pow(0.5 * mass * arrival * arrival / (0.4 * spring), 0.4);
+  const struct contact_law law = contact_law_of(scene);
+  double low = 0, high = 2 * disc->radius;
+  for (int k = 0; k < 40; k++) {
+    const double middle = 0.5 * (low + high);
+    const bool deeper =
+        contact_energy(&law, (const double[2]){disc->radius, INFINITY}, middle) < 0.5 * mass * arrival * arrival;
+    *(deeper ? &low : &high) = middle;
+  }
+  return high;
 }
 
 static void check_impact(struct draft *draft, size_t i)

@@ -27,7 +27,7 @@ struct sediment {
 
 static double buoyant_weight(const struct scene *scene, const struct disc_spec *disc, int axis)
 {
-  return M_PI * disc->radius * disc->radius * (disc->density - 1) * scene->particles.gravity[axis];
+  return disc_spec_area(disc) * (disc->density - 1) * scene->particles.gravity[axis];
 }
 
 static bool is_drawn(const struct scene *scene, const struct sediment *s, const struct disc_spec *disc)
@@ -46,7 +46,7 @@ static struct sediment gather(const struct scene *scene, int axis, bool at_high_
     const double at = disc->position[axis];
     s.count++;
     s.weight += fabs(buoyant_weight(scene, disc, axis));
-    s.area += M_PI * disc->radius * disc->radius;
+    s.area += disc_spec_area(disc);
     s.radius += disc->radius;
     s.farthest = fmax(s.farthest, at_high_end ? scene->domain.size[axis] - at : at);
     for (int k = 0; k < 2; k++) {
@@ -111,7 +111,7 @@ static void advise_overlap(const struct scene *scene, const struct sediment *s)
 {
   const struct contact_law law = contact_law_of(scene);
   struct contact_law unit = law; /* with k_n = 1 */
-  unit.stiffness = scene->contact.alpha;
+  unit.alpha_k_n = scene->contact.alpha;
   const bool alone = layers(scene, s) <= 1;
   double worst = 0, stiffness = 0;
   const struct disc_spec *before = NULL;

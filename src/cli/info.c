@@ -182,7 +182,7 @@ static void print_discs(const struct scene *scene)
     const struct disc_spec *disc = &scene->particles.discs[i];
     smallest = fmin(smallest, disc->radius);
     largest = fmax(largest, disc->radius);
-    area += M_PI * disc->radius * disc->radius;
+    area += disc_spec_area(disc);
     motions[disc->motion]++;
   }
   const double box = (double)scene->domain.size[0] * scene->domain.size[1];

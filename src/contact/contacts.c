@@ -227,9 +227,9 @@ static void prepare_all(struct contacts *c, const struct discs *d, const struct 
 }
 
 /* MAX_SUBSTEPS is the upper bound of the key contact.substeps. */
-static bool check_substeps(const struct contacts *c, struct team *team)
+static void check_substeps(const struct contacts *c, struct team *team)
 {
-  if (c->substeps <= MAX_SUBSTEPS) return true;
+  if (c->substeps <= MAX_SUBSTEPS) return;
   struct status status;
   status_fail(
       &status, DELBM_FAILED,
@@ -237,7 +237,6 @@ static bool check_substeps(const struct contacts *c, struct team *team)
       "or contact.damping, or set contact.substeps",
       c->substeps, MAX_SUBSTEPS);
   team_fail(team, &status);
-  return false;
 }
 
 /* Sets the impulse of a contact over `duration`, in a sub-step of length h, as wrenches about the bodies' centres. */
@@ -248,7 +247,7 @@ static void find_impulse(const struct contacts *m, const struct discs *d, const 
   if (is_by_cells(m, c)) k.overlap.lens.area = c->cells_area;
   if (k.overlap.lens.area > 0) kinematics_respond(&k, e, c->a, c->b, h);
   k.damping = c->damping;
-  const struct contact_impulse j = contact_law(&m->law, &c->state, &k, duration);
+  const struct contact_impulse j = contact_law_impulse(&m->law, &c->state, &k, duration);
   const double fx = j.normal * k.overlap.nx - j.tangential * k.overlap.ny,
                fy = j.normal * k.overlap.ny + j.tangential * k.overlap.nx;
   c->on_a = (struct wrench){-fx, -fy, -k.overlap.arm[0] * j.tangential};
@@ -306,7 +305,12 @@ static void save_states(struct contacts *m)
 static void run_contacts(struct contacts *c, const struct exchange *e, struct discs *d, struct team *team)
 {
   prepare_all(c, d, e);
-  if (!check_substeps(c, team)) return;
+#pragma omp single
+  {
+    check_substeps(c, team);
+    team_decide(team, &c->leave_too_stiff);
+  }
+  if (c->leave_too_stiff) return;
   const double h = 1.0 / c->substeps;
   for (int n = 0; n < c->substeps; n++) {
     const double duration = 0.5 * (c->last_substep + h);
@@ -341,6 +345,7 @@ bool stage_contact(struct contacts *c, const struct occupation *o, const struct 
     team_decide(team, &c->leave);
   }
   if (c->leave) return false;
-  if (c->count > SHORT) run_contacts(c, e, d, team); /* a failure ends the run after the next stage */
-  return true;
+  if (c->count <= SHORT) return true;
+  run_contacts(c, e, d, team);
+  return !c->leave_too_stiff;
 }

@@ -39,6 +39,7 @@ struct contacts {
   double last_substep;    /* length of the last sub-step; 0 before the first */
   int max_substeps;       /* over all steps */
   bool leave;             /* decision after the list is made (team.h) */
+  bool leave_too_stiff;   /* decision after the sub-steps are counted */
 };
 
 bool contacts_create(struct contacts *contacts, const struct scene *scene, struct contact_needs needs,

@@ -7,7 +7,7 @@
 /* (10): proportional to the overlap area. */
 static struct spring spring_of_area(const struct contact_law *law, const struct kinematics *k)
 {
-  return (struct spring){law->stiffness * k->overlap.lens.area, law->stiffness * k->overlap.lens.chord};
+  return (struct spring){law->alpha_k_n * k->overlap.lens.area, law->alpha_k_n * k->overlap.lens.chord};
 }
 
 /* (8): F = alpha k_n c delta, delta the overlap, c the chord of the lens at delta = 1 % of the smaller radius, where
@@ -19,7 +19,7 @@ static struct spring spring_of_overlap(const struct contact_law *law, const stru
   const double touch = side ? k->radius[0] : k->radius[0] + k->radius[1];
   const struct lens lens =
       side ? lens_of_wall(k->radius[0], touch - design) : lens_of_discs(k->radius[0], k->radius[1], touch - design);
-  const double stiffness = law->stiffness * lens.chord;
+  const double stiffness = law->alpha_k_n * lens.chord;
   return (struct spring){stiffness * fmax(0, touch - k->overlap.distance), stiffness};
 }
 
@@ -29,8 +29,8 @@ static contact_spring *const springs[] = {spring_of_area, spring_of_overlap};
 struct contact_law contact_law_of(const struct scene *scene)
 {
   return (struct contact_law){.spring = springs[scene->contact.law],
-                              .stiffness = scene->contact.alpha * scene->contact.stiffness,
-                              .k = scene->contact.stiffness,
+                              .alpha_k_n = scene->contact.alpha * scene->contact.stiffness,
+                              .k_n = scene->contact.stiffness,
                               .damping = scene->contact.damping,
                               .form = scene->contact.damping_form};
 }
@@ -38,11 +38,11 @@ struct contact_law contact_law_of(const struct scene *scene)
 double contact_damping(const struct contact_law *law, double inverse_mass)
 {
   if (inverse_mass <= 0) return 0;
-  return 2 * law->damping * sqrt(law->form == DAMPING_CRITICAL ? law->k / inverse_mass : law->k * inverse_mass);
+  return 2 * law->damping * sqrt(law->form == DAMPING_CRITICAL ? law->k_n / inverse_mass : law->k_n * inverse_mass);
 }
 
-struct contact_impulse contact_law(const struct contact_law *law, struct contact_state *state,
-                                   const struct kinematics *k, double h)
+struct contact_impulse contact_law_impulse(const struct contact_law *law, struct contact_state *state,
+                                           const struct kinematics *k, double h)
 {
   state_count_work(state, k->approach_speed);
   if (k->overlap.lens.area <= 0) {
@@ -52,7 +52,7 @@ struct contact_impulse contact_law(const struct contact_law *law, struct contact
   const double spring = law->spring(law, k).force, force = fmax(0, spring + k->damping * k->approach_speed);
   const double max = state_max_impulse(state, k->mean_speed, k->compliance, h * k->damping);
   state->approach_speed = k->approach_speed;
-  state->spring = fmin(h * spring, max);
+  state->spring_impulse = fmin(h * spring, max);
   state->impulse = fmin(h * force, max);
   return (struct contact_impulse){.normal = state->impulse};
 }

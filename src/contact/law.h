@@ -21,9 +21,9 @@ typedef struct spring contact_spring(const struct contact_law *law, const struct
 
 struct contact_law {
   contact_spring *spring;
-  double stiffness; /* alpha k_n */
-  double k;         /* k_n */
-  double damping;   /* eta_0 */
+  double alpha_k_n;
+  double k_n;     /* contact.stiffness of the case */
+  double damping; /* eta_0 */
   enum contact_damping form;
 };
 
@@ -38,8 +38,8 @@ struct contact_law contact_law_of(const struct scene *scene);
 double contact_damping(const struct contact_law *law, double inverse_mass);
 
 /* Impulse over the time h; updates the state. */
-struct contact_impulse contact_law(const struct contact_law *law, struct contact_state *state,
-                                   const struct kinematics *kinematics, double h);
+struct contact_impulse contact_law_impulse(const struct contact_law *law, struct contact_state *state,
+                                           const struct kinematics *kinematics, double h);
 
 /* The spring of two bodies (radius[1] infinite: a side) at an overlap, with the exact lens area. */
 struct spring contact_spring_at(const struct contact_law *law, const double radius[2], double overlap);

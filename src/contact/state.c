@@ -50,8 +50,8 @@ static bool is_possible(const struct contact_states *s, size_t k, size_t discs)
   const struct contact_state *state = &entry->state;
   const bool in_order = k == 0 || precedes(s->list[k - 1].a, s->list[k - 1].b, entry->a, entry->b);
   const bool known = entry->a < discs && (entry->b >= contact_sides || (entry->a < entry->b && entry->b < discs));
-  return in_order && known && state->stored >= 0 && state->impulse >= 0 && state->spring >= 0 &&
-         isfinite(state->stored) && isfinite(state->impulse) && isfinite(state->spring) &&
+  return in_order && known && state->stored >= 0 && state->impulse >= 0 && state->spring_impulse >= 0 &&
+         isfinite(state->stored) && isfinite(state->impulse) && isfinite(state->spring_impulse) &&
          isfinite(state->approach_speed);
 }
 

@@ -12,8 +12,8 @@
  * Limit. With the compliance c (separation speed per impulse) and w, the mean approach speed over the sub-step
  * without J, v = w - c J/2, and J v >= -E is true for
  *   J <= (w + sqrt((w^2 + 2 c E)/(1 + s^2)))/c,
- * with s = c J_d, J_d the damper's impulse per approach speed. s = 0 is the bound itself; at s > 1 the damper alone
- * would stop the pair within the sub-step, and the separation speed is reduced. */
+ * with s = c J_d, J_d the damper's impulse per approach speed. s = 0 is the bound itself. 1 + s^2 is empirical: at s > 1
+ * the damper alone would stop the pair within the sub-step, and the separation speed falls as 1/s. */
 #ifndef DELBM_CONTACT_STATE_H
 #define DELBM_CONTACT_STATE_H
 
@@ -24,7 +24,7 @@
 struct contact_state {
   double stored;         /* E */
   double impulse;        /* J of the last sub-step */
-  double spring;         /* S */
+  double spring_impulse; /* S */
   double approach_speed; /* before J */
 };
 
@@ -32,9 +32,9 @@ struct contact_state {
 static inline void state_count_work(struct contact_state *state, double approach_speed)
 {
   const double mean = 0.5 * (state->approach_speed + approach_speed);
-  const double damped = fmax(0, (state->impulse - state->spring) * mean);
+  const double damped = fmax(0, (state->impulse - state->spring_impulse) * mean);
   state->stored = fmax(0, state->stored + state->impulse * mean - damped);
-  state->impulse = state->spring = 0;
+  state->impulse = state->spring_impulse = 0;
 }
 
 /* Upper limit of J; `mean_speed` is w, `damper` J_d. */

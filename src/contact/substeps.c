@@ -20,7 +20,7 @@ int substeps_by_lens(const struct scene *scene)
   for (size_t i = 0; i < scene->particles.count; i++) {
     const struct disc_spec *disc = &scene->particles.discs[i];
     if (disc->motion != DISC_FREE) continue;
-    min_mass = fmin(min_mass, disc->density * M_PI * disc->radius * disc->radius);
+    min_mass = fmin(min_mass, disc->density * disc_spec_area(disc));
     radius = fmax(radius, disc->radius);
   }
   if (!(min_mass < INFINITY)) return 1;

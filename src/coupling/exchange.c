@@ -59,7 +59,7 @@
 /* Minimum of the inertia within a step, in units of m_f and I_f. */
 static const double min_inertia = 0.15;
 
-/* Factor of |M1|/2 in this minimum. With 1 the smallest eigenvalue is min_inertia; more is needed at sides, since
+/* Factor of |M1|/(2 sqrt(m_f I_f)) in this minimum. With 1 the smallest eigenvalue is min_inertia; more is needed at sides, since
  * m_f then counts fluid beyond the side: with 3 a disc of R = 8, density 0.01, at rest against a wall diverges at
  * viscosity 10. */
 static const double coupled_inertia = 5;
@@ -67,16 +67,17 @@ static const double coupled_inertia = 5;
 /* Duration of the mean C, in steps: much longer than impacts with an effect of s. */
 static const double mean_contact_time = 100;
 
-static bool is_light(const struct discs *d, size_t i)
+/* Whether the inertia within a step, m - m_f + M0/2 >= m - m_f, can be below its minimum. */
+static bool may_need_virtual_mass(const struct discs *d, size_t i)
 {
   return d->motion[i] == DISC_FREE && d->mass[i] < (1 + min_inertia) * d->fluid_mass[i];
 }
 
-static bool any_light(const struct exchange *e, const struct discs *d)
+static bool any_may_need_virtual_mass(const struct exchange *e, const struct discs *d)
 {
   if (e->solve != SOLVE_IMPLICIT) return false;
   for (size_t i = 0; i < d->count; i++)
-    if (is_light(d, i)) return true;
+    if (may_need_virtual_mass(d, i)) return true;
   return false;
 }
 
@@ -85,10 +86,11 @@ struct virtual_mass {
   double mass, inertia, time;
 };
 
-/* Zero for discs that are not light. */
+/* Zero for discs that need none. T is at least the time of sound across four radii, by which the fluid of partly covered
+ * cells has responded. */
 static struct virtual_mass virtual_mass_of(const struct exchange *e, const struct discs *d, size_t i)
 {
-  if (!e->deferred || !is_light(d, i)) return (struct virtual_mass){0};
+  if (!e->deferred || !may_need_virtual_mass(d, i)) return (struct virtual_mass){0};
   const struct gathered *g = &e->gathered[i];
   const double inertia = d->mass[i] - d->fluid_mass[i] + g->m0 / 2;
   const double angular = d->inertia[i] - d->fluid_inertia[i] + g->m2 / 2;
@@ -111,7 +113,8 @@ bool exchange_create(struct exchange *e, const struct scene *scene, const struct
   if ((e->gathered = memory_allocate(discs->count, sizeof *e->gathered, what, status)) &&
       (e->response = memory_allocate(discs->count, sizeof *e->response, what, status)) &&
       (e->surface = memory_allocate(discs->count, sizeof *e->surface, what, status)) &&
-      (!any_light(e, discs) || (e->deferred = memory_allocate(3 * discs->count, sizeof *e->deferred, what, status))) &&
+      (!any_may_need_virtual_mass(e, discs) ||
+       (e->deferred = memory_allocate(3 * discs->count, sizeof *e->deferred, what, status))) &&
       (e->solve != SOLVE_IMPLICIT ||
        (e->mean_contact = memory_allocate(3 * discs->count, sizeof *e->mean_contact, what, status))) &&
       (e->solve == SOLVE_IMPLICIT ||

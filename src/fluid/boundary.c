@@ -13,9 +13,9 @@
  *                normal component reversed, c = 0. Normal velocity and shear stress are zero at the side.
  *   outlet       zero gradient: a ghost cell beside the source sends the source's populations, m = i, c = -w_i cut.
  *                The density of the ghost cell is below the density of the source by
- *                  cut = h e + d,   (6/h) dd/dt = 3 d(e - j)/dt + cut - d,
- *                e the excess over the reference density at the face between both cells, j the momentum along the
- *                outward normal. Transmitted sound changes 3 (e - j) by -cut a step; the other changes are pressure
+ *                  cut = h e + d,   (6/h) dd/dt = 3 d(e_s - j)/dt + cut - d,
+ *                e_s the excess of the source over the reference density, e = e_s - cut/2 at the face between both
+ *                cells, j the momentum of the source along the outward normal. Transmitted sound changes 3 (e_s - j) by -cut a step; the other changes are pressure
  *                gradient and friction of the flow, estimated by d. The reflection factor of sound is
  *                -((2 - sqrt(3)) s + k)/(s + k), k = h/(3 + sqrt(3)), s = i times the angular frequency, for any d;
  *                the excess of steady flow, with cut = h e alone its pressure gradient over h, decays within some
@@ -33,7 +33,7 @@
  * the normal component: at its corner with an outlet it reflects the populations of the outlet's ghost cell.
  *
  * Storage. c[side][j] is an array over the cells of the side for each of the three links j of a cell; state[side] is
- * an array over the same cells, of the rule's state (an outlet: d, cut and the last 3 (e - j)).
+ * an array over the same cells, of the rule's state (an outlet: d, cut and the last 3 (e_s - j)).
  *
  * Races. Every slot that a rule writes belongs to its link, or to the ghost cell, alone (populations.h), and a link
  * depends only on its source: rows may be updated in any order that streaming allows, by any thread. */
@@ -61,9 +61,9 @@ static int reversed(int i, const bool components[2])
 static struct side_link link_of(const struct side_rule *rule, enum side_name side, int j)
 {
   const int axis = side_axis(side), i = inward[side][j], e[2] = {d2q9_ex[i], d2q9_ey[i]};
-  const bool components[2] = {rule->imposes[axis], rule->imposes[!axis]};
+  const bool components[2] = {rule->reverses[axis], rule->reverses[!axis]};
   return (struct side_link){
-      .i = i, .m = reversed(i, components), .along = e[!axis], .shift = rule->imposes[1] ? 0 : e[!axis]};
+      .i = i, .m = reversed(i, components), .along = e[!axis], .shift = rule->reverses[1] ? 0 : e[!axis]};
 }
 
 static bool create_side(struct boundary *b, enum side_name side, struct status *status)
@@ -164,8 +164,10 @@ static void side_links(struct boundary *b, struct populations *p, enum side_name
   const struct side_rule *rule = b->rule[side];
   const bool ring = b->ring[!side_axis(side)];
   const int n = boundary_length(b, side);
-  if (step && rule->step) rule->step(b, p, side, k0, k1);
-  if (step && rule->step) rule->fill(b, side, k0, k1);
+  if (step && rule->step) {
+    rule->step(b, p, side, k0, k1);
+    if (rule->fill) rule->fill(b, side, k0, k1);
+  }
   for (int j = 0; j < SIDE_LINKS; j++) {
     const int along = b->link[side][j].along, shift = b->link[side][j].shift;
     const int low = (!ring && along > 0) - shift, high = n - (!ring && along < 0) - shift; /* sources without corners */

@@ -74,16 +74,16 @@ static void step_outlet(struct boundary *b, const struct populations *p, enum si
 }
 
 static const struct side_rule rules[] = {
-    [SIDE_WALL] = {.a = 1, .imposes = {true, true}, .fill = fill_momentum},
+    [SIDE_WALL] = {.a = 1, .reverses = {true, true}, .imposes = {true, true}, .fill = fill_momentum},
     [SIDE_PERIODIC] = {.a = 1, .joins = true},
-    [SIDE_INLET] = {.a = 1, .imposes = {true, true}, .fill = fill_momentum},
+    [SIDE_INLET] = {.a = 1, .reverses = {true, true}, .imposes = {true, true}, .fill = fill_momentum},
     [SIDE_OUTLET] = {.a = 1,
                      .state = sizeof(struct outlet_cell),
                      .fill = fill_cut,
                      .step = step_outlet,
                      .reset = reset_outlet,
                      .corner = corner_cut},
-    [SIDE_SLIP] = {.a = 1, .imposes = {true, false}},
+    [SIDE_SLIP] = {.a = 1, .reverses = {true, false}, .imposes = {true, false}},
 };
 
 const struct side_rule *side_rule_of(enum side_type type)

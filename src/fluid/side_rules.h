@@ -5,10 +5,11 @@
 #include "fluid/links.h"
 
 struct side_rule {
-  double a;
-  /* Components of the fluid's velocity that the side imposes: normal, tangential. m is i with the imposed components
-   * reversed: the opposite of i with both (wall, inlet), the mirror image with the normal component (slip), i with none
-   * (outlet). Also for corners, with the velocity of struct side. */
+  double a; /* at all links but those out of corners, where it is 1 */
+  /* Components, normal and tangential, that m has reversed: m is the opposite of i with both (wall, inlet), the mirror
+   * image of i with the normal one (slip), i with none (outlet). */
+  bool reverses[2];
+  /* Components of the fluid's velocity that the side imposes at corners, with the velocity of struct side. */
   bool imposes[2];
   bool joins;   /* the sources are cells of the other side of the axis (periodic) */
   size_t state; /* bytes of each cell's state, zero at the start; 0: none */

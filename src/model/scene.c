@@ -4,6 +4,7 @@
 #include "model/fill_grid.h"
 
 #include <gsl/gsl_rng.h>
+#include <math.h>
 #include <stdlib.h>
 
 const struct side_kind *side_kind_of(enum side_type type)
@@ -16,6 +17,11 @@ const struct side_kind *side_kind_of(enum side_type type)
       [SIDE_SLIP] = {.name = "a slip side", .closed = true},
   };
   return &kinds[type];
+}
+
+double disc_spec_area(const struct disc_spec *disc)
+{
+  return M_PI * disc->radius * disc->radius;
 }
 
 void scene_clear(struct scene *scene)

@@ -49,6 +49,9 @@ struct disc_spec {
   enum disc_motion motion;
 };
 
+/* Area of the disc. */
+double disc_spec_area(const struct disc_spec *disc);
+
 /* Discs on a square grid, each displaced by up to `jitter` cells in x and in y. */
 struct fill_spec {
   bool present;

@@ -41,7 +41,7 @@ static double past_fixed_discs(const struct scene *scene, double force)
     if (disc->motion != DISC_FIXED) continue;
     count++;
     radius += disc->radius;
-    area += M_PI * disc->radius * disc->radius;
+    area += disc_spec_area(disc);
   }
   if (count == 0) return INFINITY;
   const double load = force * cells / count, fraction = fmin(area / cells, 0.7);
@@ -93,7 +93,7 @@ static void consider_disc(struct estimate *fastest, const struct scene *scene, s
 static void consider_weight(struct estimate *fastest, const struct scene *scene, const struct disc_spec *disc)
 {
   const double *gravity = scene->particles.gravity, viscosity = scene->fluid.viscosity;
-  const double buoyant = M_PI * disc->radius * disc->radius * fabs(disc->density - 1);
+  const double buoyant = disc_spec_area(disc) * fabs(disc->density - 1);
   const double weight = buoyant * hypot(gravity[0], gravity[1]);
   if (disc->motion != DISC_FREE || weight == 0) return;
   const struct estimate own = {
@@ -146,7 +146,7 @@ void estimate_weight(const struct scene *scene, double weight[2])
   for (size_t i = 0; i < scene->particles.count; i++) {
     const struct disc_spec *disc = &scene->particles.discs[i];
     if (disc->motion != DISC_FREE) continue;
-    const double mass = M_PI * disc->radius * disc->radius * (disc->density - 1);
+    const double mass = disc_spec_area(disc) * (disc->density - 1);
     for (int axis = 0; axis < 2; axis++) weight[axis] += mass * scene->particles.gravity[axis];
   }
 }

@@ -13,7 +13,7 @@ static double max_load(const struct scene *scene, int axis)
   double buoyant_mass = 0;
   for (size_t i = 0; i < scene->particles.count; i++) {
     const struct disc_spec *disc = &scene->particles.discs[i];
-    if (disc->motion == DISC_FREE) buoyant_mass += fabs(disc->density - 1) * M_PI * disc->radius * disc->radius;
+    if (disc->motion == DISC_FREE) buoyant_mass += fabs(disc->density - 1) * disc_spec_area(disc);
   }
   return fabs(scene->fluid.force[axis]) +
          buoyant_mass * fabs(scene->particles.gravity[axis]) / (double)scene_cells(scene);

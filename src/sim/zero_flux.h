@@ -12,7 +12,7 @@
  * load is balanced from the start and z vanishes once discs are at rest on a side. The first term of the rest
  * cancels a quarter of the acceleration in the last interval, the second removes momentum. The roots of
  *   L^2 - (2 - 5 r/16) L + 1 - r/4 = 0
- * are the amplification factors per interval: 0.87 in magnitude at r = 1, below 1 for r < 6.4. So at r = 3 the gain
+ * are the amplification factors per interval: 0.87 in magnitude at r = 1, below 1 for r < 64/9. So at r = 3 the gain
  * is below half of its limit. For constant a the momentum converges to zero.
  *
  * n is 16, or less: in small boxes half of the time of sound across the box, since over a longer interval the
