@@ -84,7 +84,7 @@ Test(faults, a_missing_folder_or_case_is_named)
   cr_expect_eq(shell("$DELBM resume absent 2>err"), 4);
   cr_expect_eq(shell("grep -q '^delbm: cannot open absent/case.yaml: No such file or directory$' err"), 0);
   cr_expect_eq(shell("mkdir bare; cp silent.yaml bare/case.yaml; $DELBM resume bare 2>err"), 4);
-  cr_expect_eq(shell("grep -q '^delbm: nothing to resume: bare holds no checkpoint$' err"), 0);
+  cr_expect_eq(shell("grep -q '^delbm: nothing to resume: bare contains no checkpoint$' err"), 0);
 }
 
 /* Starts a run without end, runs the script on its folder once there are rows, and returns the run's exit code. */

@@ -359,7 +359,7 @@ Test(resume, without_regular_checkpoints_leaves_none_behind)
   cr_expect_eq(shell("ls cut/checkpoint.0 >/dev/null && $DELBM resume cut --quiet >/dev/null"), 0);
   cr_expect_eq(shell("ls cut/checkpoint.* cut/fields 2>/dev/null"), 2);
   cr_expect_eq(shell("$DELBM resume cut 2>err"), 4);
-  cr_expect_eq(shell("grep -q 'nothing to resume: cut holds no checkpoint' err"), 0);
+  cr_expect_eq(shell("grep -q 'nothing to resume: cut contains no checkpoint' err"), 0);
 }
 
 Test(resume, extends_a_finished_run)

@@ -13,11 +13,11 @@ bool pairs_create(struct pair_list *list, const struct scene *scene, const struc
 {
   const char *what = "the pairs";
   *list = (struct pair_list){
-      .within = l + pairs_margin, .uses_cells = scene->contact.search == SEARCH_LINKED_CELL, .stale = true};
-  const bool cells =
-      !list->uses_cells || linked_cell_create(&list->linked, scene, discs, scene->contact.edge, list->within, status);
-  list->batch_count =
-      list->uses_cells ? (size_t)list->linked.cells[1] : (size_t)((scene->domain.size[1] + BAND_ROWS - 1) / BAND_ROWS);
+      .within = l + pairs_margin, .uses_linked_cells = scene->contact.search == SEARCH_LINKED_CELL, .stale = true};
+  const bool cells = !list->uses_linked_cells ||
+                     linked_cell_create(&list->linked, scene, discs, scene->contact.edge, list->within, status);
+  list->batch_count = list->uses_linked_cells ? (size_t)list->linked.cells[1]
+                                              : (size_t)((scene->domain.size[1] + BAND_ROWS - 1) / BAND_ROWS);
   if (cells && (list->x = memory_allocate(discs->count, sizeof *list->x, what, status)) &&
       (list->y = memory_allocate(discs->count, sizeof *list->y, what, status)) &&
       (list->next = memory_allocate(discs->count + 1, sizeof *list->next, what, status)) &&
@@ -176,12 +176,12 @@ bool pairs_update(struct pair_list *list, const struct occupation *o, const stru
     }
   if (!list->stale) return true;
 #pragma omp single
-  if (list->uses_cells) linked_cell_sort(&list->linked, d);
+  if (list->uses_linked_cells) linked_cell_sort(&list->linked, d);
 #pragma omp for schedule(dynamic, 1)
   for (size_t k = 0; k < list->batch_count; k++) {
     list->batches[k].count = 0;
-    if (!(list->uses_cells ? linked_cell_search(&list->linked, d, (int)k, &list->batches[k], &status)
-                           : search_grid(list, k, o, d, &status)))
+    if (!(list->uses_linked_cells ? linked_cell_search(&list->linked, d, (int)k, &list->batches[k], &status)
+                                  : search_grid(list, k, o, d, &status)))
       team_fail(team, &status);
   }
 #pragma omp single

@@ -23,7 +23,7 @@ struct pair_list {
   double within;             /* l + margin */
   double *x, *y;             /* [disc] at the construction */
   struct linked_cell linked; /* with search: linked-cell */
-  bool uses_cells;
+  bool uses_linked_cells;
   struct pair_batch *batches; /* [batch_count]: of a band of rows, or of a row of linked cells */
   size_t batch_count;
   struct pair *sorted; /* by a, with duplicates */

@@ -4,12 +4,12 @@
 
 #include <math.h>
 
-int substeps_needed(const struct scene *scene, double stiffness, double damping, double inverse_mass)
+int substeps_needed(const struct scene *scene, double stiffness, double damping, double compliance)
 {
   if (scene->contact.substeps > 0) return scene->contact.substeps;
-  const double half_period = M_PI / sqrt(fmax(stiffness * inverse_mass, 1e-300)); /* of the undamped contact */
+  const double half_period = M_PI / sqrt(fmax(stiffness * compliance, 1e-300)); /* of the undamped contact */
   const double for_spring = scene->contact.steps_per_contact / half_period;
-  const double for_damper = 2 * damping * inverse_mass; /* damping * inverse_mass * h <= 1/2; overshoot from 1 on */
+  const double for_damper = 2 * damping * compliance; /* damping * compliance * h <= 1/2; overshoot from 1 on */
   return (int)fmin(fmax(1, ceil(fmax(for_spring, for_damper))), 1e9);
 }
 

@@ -5,8 +5,9 @@
 
 #include "model/scene.h"
 
-/* For a contact of this stiffness (force per overlap), damping coefficient and inverse mass of relative motion. */
-int substeps_needed(const struct scene *scene, double stiffness, double damping, double inverse_mass);
+/* For a contact of this stiffness (force per overlap), damping coefficient and compliance (separation speed
+ * per impulse; without fluid the inverse mass of relative motion). */
+int substeps_needed(const struct scene *scene, double stiffness, double damping, double compliance);
 
 /* Maximum over the scene's discs, at an overlap of one cell. */
 int substeps_max(const struct scene *scene);

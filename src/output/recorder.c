@@ -238,7 +238,7 @@ static bool resume(struct recorder *recorder, struct simulation *simulation, str
   if (!lock_folder(recorder, status)) return false;
   if (!choose_checkpoint(recorder, &chosen, &head, &resumption->refused)) {
     if (resumption->refused.code == DELBM_OK)
-      return status_fail(status, DELBM_IO, "nothing to resume: %s holds no checkpoint", recorder->directory);
+      return status_fail(status, DELBM_IO, "nothing to resume: %s contains no checkpoint", recorder->directory);
     *status = resumption->refused;
     resumption->refused.code = DELBM_OK;
     return false;

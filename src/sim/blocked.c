@@ -6,7 +6,7 @@
  *
  * Tiles. Rows are divided into tiles of `width` cells, each step shifted by one cell to the left of the step before,
  * so that the working set of a wavefront, depth + 2 rows of a tile, fits the nearest cache. With periodic x the
- * first tile recedes from the left side by a cell each step; the last tile adds these cells.
+ * first tile recedes from the left side by a cell each step, and the last tile also updates these first cells.
  *
  * Slabs. Each thread has a slab of rows. Within a block a slab recedes by a row each step from adjacent slabs (not
  * from walls); after a barrier, the missing triangle around each border, which grows by a row on both sides each

@@ -50,7 +50,7 @@ static bool check_disc(const struct scene *scene, const struct discs *d, size_t 
     return status_fail(
         status, DELBM_FAILED,
         "step %lld: disc %zu near (%.1f, %.1f) was pushed out of the box: contact.stiffness, %g, does not "
-        "hold it against its weight, its speed or a disc that pushes it",
+        "balance its weight, its speed or a disc that pushes it",
         (long long)step, i, from[0], from[1], scene->contact.stiffness);
   return true;
 }

@@ -1,8 +1,10 @@
-/* The shape of a body. The rest of the program accesses a shape only by the functions of struct shape_kind. Shapes
- * are convex, so that a body has one run of cells in each row.
+/* The shape of a body. Occupation, coupling and contact geometry access a shape only by the functions of struct
+ * shape_kind. Shapes are convex, so that a body has one run of cells in each row.
  *
  * A new shape is one file that defines a struct shape_kind, the fields of struct shape for its measures, and a line in
- * discs.c that chooses it. Lattice units; angles in radians, counter-clockwise. */
+ * discs.c that chooses it. The present limits of the interface: a contact is between shapes of one kind, and its point
+ * lies on the normal through both centroids, as for discs; angles do not change in sub-steps. Estimates before a run
+ * (disc_spec_area), pictures and tables know discs only. Lattice units; angles in radians, counter-clockwise. */
 #ifndef DELBM_SOLID_SHAPE_H
 #define DELBM_SOLID_SHAPE_H
 
