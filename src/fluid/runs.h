@@ -10,7 +10,7 @@
 struct run {
   int32_t x, n;
   uint32_t owner; /* index of the body */
-  uint32_t first; /* index of the first cell's owner weight in the band's array (occupation.h) */
+  uint32_t first; /* index of the first cell's owner weight in the band's array (solid/tables.h) */
   double rx, ry;  /* from the owner's centre to the centre of the first cell */
 };
 

@@ -3,12 +3,12 @@
 #ifndef DELBM_SOLID_BAND_H
 #define DELBM_SOLID_BAND_H
 
-#include "solid/occupation.h"
 #include "solid/solid_kernel.h"
+#include "solid/tables.h"
 
 struct run_draft {
   size_t cell; /* index of the first cell in eps[] */
-  size_t slot; /* index in run_index[] (occupation.h) */
+  size_t slot; /* index in run_index[] (tables.h) */
 };
 
 struct band_draft {
