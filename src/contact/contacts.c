@@ -200,12 +200,14 @@ static bool is_by_cells(const struct contacts *m, const struct contact *c)
  * step. */
 static int prepare(const struct contacts *m, const struct discs *d, const struct exchange *e, struct contact *c)
 {
-  struct kinematics k = kinematics_of(m->scene, d, c->a, c->b, &m->at);
-  const double overlap = k.radius[0] + (contact_is_with_side(c->b) ? 0 : k.radius[1]) - k.overlap.distance;
+  const bool is_placed = c->is_new && m->placed;
   c->damping = contact_damping(&m->law, c->inverse_mass);
-  if (c->is_new && m->placed) c->state.stored = contact_energy(&m->law, k.radius, overlap);
   if (is_by_cells(m, c))
     c->cells_area = cells_area(m->scene, d, c->a, c->b, m->scratch + (size_t)omp_get_thread_num() * m->scratch_size);
+  if (!is_placed && !m->needs.substeps) return 1;
+  struct kinematics k = kinematics_of(m->scene, d, c->a, c->b, &m->at);
+  const double overlap = k.radius[0] + (contact_is_with_side(c->b) ? 0 : k.radius[1]) - k.overlap.distance;
+  if (is_placed) c->state.stored = contact_energy(&m->law, k.radius, overlap);
   if (!m->needs.substeps) return 1;
   const double reached = fmax(0, overlap) + fmax(0, k.approach_speed);
   kinematics_respond(&k, e, c->a, c->b, 0);
