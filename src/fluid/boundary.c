@@ -166,17 +166,22 @@ static void transfer(struct boundary *b, struct populations *p, enum side_name s
        b->rule[side]->a, b->c[side][j] + source);
 }
 
+/* Advances the states of cells k0 .. k1 - 1, which have completed a step, and sets their c. */
+static void advance_states(struct boundary *b, const struct populations *p, enum side_name side, int k0, int k1)
+{
+  const struct side_rule *rule = b->rule[side];
+  if (!rule->step) return;
+  rule->step(b, p, side, k0, k1);
+  if (rule->fill) rule->fill(b, side, k0, k1);
+}
+
 /* The links of one side with sources k0 .. k1 - 1, corners excluded. `step`: the sources have completed a step, so
  * the states advance. */
 static void side_links(struct boundary *b, struct populations *p, enum side_name side, int k0, int k1, bool step)
 {
-  const struct side_rule *rule = b->rule[side];
   const bool ring = b->ring[!side_axis(side)];
   const int n = boundary_length(b, side);
-  if (step && rule->step) {
-    rule->step(b, p, side, k0, k1);
-    if (rule->fill) rule->fill(b, side, k0, k1);
-  }
+  if (step) advance_states(b, p, side, k0, k1);
   for (int j = 0; j < SIDE_LINKS; j++) {
     const int along = b->link[side][j].along, shift = b->link[side][j].shift;
     const int low = (!ring && along > 0) - shift, high = n - (!ring && along < 0) - shift; /* sources without corners */
@@ -194,10 +199,7 @@ static void cell_links(struct boundary *b, struct populations *p, enum side_name
   const struct side_rule *rule = b->rule[side];
   const int along = !side_axis(side);
   int from[2], to[2];
-  if (step && rule->step) {
-    rule->step(b, p, side, k, k + 1);
-    if (rule->fill) rule->fill(b, side, k, k + 1);
-  }
+  if (step) advance_states(b, p, side, k, k + 1);
   boundary_cell(b, rule->joins ? opposite(side) : side, k, from);
   boundary_cell(b, side, k, to);
   for (int j = 0; j < SIDE_LINKS; j++) {
