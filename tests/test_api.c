@@ -155,7 +155,7 @@ Test(api, discs_that_start_too_deep_in_a_side_or_in_another_or_run_too_deep_into
                {"{radius: 8, position: [30, 30]}, {radius: 9, position: [30, 39.1]}", NULL},
                {"{radius: 8, position: [30, 30]}, {radius: 9, position: [30, 38.9]}", "not 8.1 within disc 1"},
                {"{radius: 8, position: [30, 30], fixed: true}, {radius: 9, position: [30, 32], fixed: true}", NULL},
-               {"{radius: 10, position: [30, 12], velocity: [0, -0.08]}", "cells beyond the bottom side, not 9."},
+               {"{radius: 10, position: [30, 12], velocity: [0, -0.08]}", "cells beyond the bottom side, not 10."},
                {"{radius: 10, position: [30, 12], velocity: [0, 0.005]}", NULL},
                {"{radius: 10, position: [30, 12], velocity: [0, -0.005]}", NULL}};
   for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
