@@ -28,7 +28,9 @@ eval draw("density of a settling disc", "density")
 eval draw("fixed disc that spins", "spin")
 eval draw("fixed disc under a lid", "Mach number of the lid")
 eval draw("impact, damping 0.34, restitution", "sub-steps (rows: stiffness)")
+set xrange [-0.6:0.6] # one column
 eval draw("impact by cells, damping 0.34, restitution", "sub-steps (rows: stiffness)")
+set autoscale x
 eval draw("fast impact, overlap", "Mach number of each (rows: density)")
 eval draw("packing pressed by its weight", "weight (rows: stiffness)")
 eval draw("small discs on a large one", "ratio of radii (rows: stiffness)")
