@@ -5,8 +5,8 @@
 #include "solid/occupation.h"
 #include "base/clock.h"
 #include "bench.h"
-#include "scenes.h"
 #include "disc_area.h"
+#include "scenes.h"
 #include "solid/solid_kernel.h"
 
 #include <gsl/gsl_randist.h>

@@ -1,8 +1,8 @@
 /* Occupation: how much of each cell each disc covers, who shares a cell, and who is near whom. */
 #include "contact/cells_area.h"
 #include "contact/pairs.h"
-#include "scenes.h"
 #include "disc_area.h"
+#include "scenes.h"
 #include "solid/occupation.h"
 
 #include <criterion/criterion.h>

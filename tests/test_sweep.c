@@ -1,7 +1,7 @@
 /* The fluid: lattice identities, and every kernel against the reference on random states and all boundaries. */
 #include "fluid/boundary.h"
-#include "reference.h"
 #include "lattice/moments.h"
+#include "reference.h"
 
 #include <criterion/criterion.h>
 #include <gsl/gsl_rng.h>
