@@ -17,10 +17,11 @@ double memory_physical(void)
 
 double memory_resident(void)
 {
-  FILE *file = fopen("/proc/self/statm", "re");
-  long pages = 0;
+  FILE *file = fopen("/proc/self/statm", "re"); /* "SIZE RESIDENT ...", in pages */
+  char line[128] = "";
   if (!file) return 0;
-  if (fscanf(file, "%*d %ld", &pages) != 1) pages = 0;
+  const char *second = fgets(line, sizeof line, file) ? strchr(line, ' ') : NULL;
+  const long pages = second ? strtol(second, NULL, 10) : 0;
   fclose(file);
   return (double)pages * (double)sysconf(_SC_PAGESIZE);
 }

@@ -35,7 +35,7 @@ static void print_help(const struct command *command)
   int width = 0;
   print_usage(command);
   for (const struct option_row *row = command->options; row->name; row++) {
-    const int length = print_option(row, NULL, 0);
+    const int length = print_option(row, option, sizeof option);
     if (length > width) width = length;
   }
   for (const struct option_row *row = command->options; row->name; row++) {

@@ -28,7 +28,7 @@ static contact_spring *const springs[] = {spring_of_area, spring_of_overlap};
 
 struct contact_law contact_law_of(const struct scene *scene)
 {
-  return (struct contact_law){.spring = springs[scene->contact.law],
+  return (struct contact_law){.force_of = springs[scene->contact.law],
                               .alpha_k_n = scene->contact.alpha * scene->contact.stiffness,
                               .k_n = scene->contact.stiffness,
                               .damping = scene->contact.damping,
@@ -49,7 +49,7 @@ struct contact_impulse contact_law_impulse(const struct contact_law *law, struct
     state->stored = 0;
     return (struct contact_impulse){0};
   }
-  const double spring = law->spring(law, k).force, force = fmax(0, spring + k->damping * k->approach_speed);
+  const double spring = law->force_of(law, k).force, force = fmax(0, spring + k->damping * k->approach_speed);
   const double max = state_max_impulse(state, k->mean_speed, k->compliance, h * k->damping);
   state->approach_speed = k->approach_speed;
   state->spring_impulse = fmin(h * spring, max);
@@ -64,7 +64,7 @@ struct spring contact_spring_at(const struct contact_law *law, const double radi
   k.overlap.distance = (side ? radius[0] : radius[0] + radius[1]) - overlap;
   k.overlap.lens =
       side ? lens_of_wall(radius[0], k.overlap.distance) : lens_of_discs(radius[0], radius[1], k.overlap.distance);
-  return law->spring(law, &k);
+  return law->force_of(law, &k);
 }
 
 /* Simpson's rule in the root of the overlap: forces proportional to overlap^(3/2) are smooth in the root. */

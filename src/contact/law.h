@@ -20,7 +20,7 @@ struct spring {
 typedef struct spring contact_spring(const struct contact_law *law, const struct kinematics *kinematics);
 
 struct contact_law {
-  contact_spring *spring;
+  contact_spring *force_of;
   double alpha_k_n;
   double k_n;     /* contact.stiffness of the case */
   double damping; /* eta_0 */
