@@ -206,6 +206,35 @@ static double force_of(const struct contact_law *law, double area, double approa
   return contact_law_impulse(law, &state, &k, 1).normal;
 }
 
+/* Contact points off the line of centroids, as of shapes that are not round. */
+Test(geometry, compliance_is_the_separation_speed_at_the_contact_point_per_impulse)
+{
+  const unsigned long seed = 7;
+  gsl_rng *random = random_from(seed);
+  for (int n = 0; n < 1000; n++) {
+    struct response r[2];
+    const double angle = between(random, 0, 2 * M_PI), nx = cos(angle), ny = sin(angle);
+    struct kinematics k = {.overlap = {.nx = nx, .ny = ny, .offset = {between(random, -3, 3), between(random, -3, 3)}}};
+    double separation = 0;
+    for (int end = 0; end < 2; end++) {
+      const double sign = end ? 1 : -1, offset = k.overlap.offset[end];
+      double dv[3];
+      r[end] = (struct response){.xx = between(random, 1, 2),
+                                 .xy = between(random, -1, 1),
+                                 .xw = between(random, -1, 1),
+                                 .yy = between(random, 1, 2),
+                                 .yw = between(random, -1, 1),
+                                 .ww = between(random, 1, 2)};
+      response_to(&r[end], (const double[3]){sign * nx, sign * ny, -sign * offset}, dv);
+      separation += sign * (dv[0] * nx + dv[1] * ny - offset * dv[2]);
+    }
+    const struct exchange exchange = {.response = r};
+    kinematics_respond(&k, &exchange, 0, 1, 0);
+    cr_expect_float_eq(k.compliance, separation, 1e-13 * 20, "seed %lu: %g, %g", seed, k.compliance, separation);
+  }
+  gsl_rng_free(random);
+}
+
 Test(law, force_is_never_attractive_and_acts_on_overlap_only)
 {
   const unsigned long seed = 3;

@@ -58,6 +58,7 @@ static bool allocate_moving(struct contacts *c, size_t discs, struct status *sta
          (c->at.vx = memory_allocate(discs, sizeof *c->at.vx, what, status)) &&
          (c->at.vy = memory_allocate(discs, sizeof *c->at.vy, what, status)) &&
          (c->at.omega = memory_allocate(discs, sizeof *c->at.omega, what, status)) &&
+         (c->at.angle = memory_allocate(discs, sizeof *c->at.angle, what, status)) &&
          (c->impulse = memory_allocate(discs, sizeof *c->impulse, what, status));
 }
 
@@ -86,8 +87,8 @@ void contacts_destroy(struct contacts *c)
 {
   pairs_destroy(&c->pairs);
   states_destroy(&c->states);
-  void *const arrays[] = {c->list, c->scratch, c->moving, c->is_moving, c->at.x,
-                          c->at.y, c->at.vx,   c->at.vy,  c->at.omega,  c->impulse};
+  void *const arrays[] = {c->list,  c->scratch, c->moving,   c->is_moving, c->at.x,   c->at.y,
+                          c->at.vx, c->at.vy,   c->at.omega, c->at.angle,  c->impulse};
   for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; k++) free(arrays[k]);
   *c = (struct contacts){0};
 }
@@ -125,6 +126,7 @@ static void start_moving(struct contacts *c, const struct discs *d, uint32_t i)
   c->at.y[i] = d->y[i];
   c->at.vx[i] = d->vx[i];
   c->at.vy[i] = d->vy[i];
+  c->at.angle[i] = d->angle[i];
   c->at.omega[i] = d->omega[i];
   c->impulse[i] = (struct wrench){0};
 }
@@ -206,12 +208,13 @@ static int prepare(const struct contacts *m, const struct discs *d, const struct
     c->cells_area = cells_area(m->scene, d, c->a, c->b, m->scratch + (size_t)omp_get_thread_num() * m->scratch_size);
   if (!is_placed && !m->needs.substeps) return 1;
   struct kinematics k = kinematics_of(m->scene, d, c->a, c->b, &m->at);
-  const double overlap = k.radius[0] + (contact_is_with_side(c->b) ? 0 : k.radius[1]) - k.overlap.distance;
-  if (is_placed) c->state.stored = contact_energy(&m->law, k.radius, overlap);
+  const double overlap = k.overlap.depth;
+  if (is_placed) c->state.stored = contact_energy(&m->law, k.overlap.radius, overlap);
   if (!m->needs.substeps) return 1;
   const double reached = fmax(0, overlap) + fmax(0, k.approach_speed);
   kinematics_respond(&k, e, c->a, c->b, 0);
-  return substeps_needed(m->scene, contact_spring_at(&m->law, k.radius, reached).stiffness, c->damping, k.compliance);
+  return substeps_needed(m->scene, contact_spring_at(&m->law, k.overlap.radius, reached).stiffness, c->damping,
+                         k.compliance);
 }
 
 /* Prepares all contacts; sets the number of sub-steps. */
@@ -252,8 +255,9 @@ static void find_impulse(const struct contacts *m, const struct discs *d, const 
   const struct contact_impulse j = contact_law_impulse(&m->law, &c->state, &k, duration);
   const double fx = j.normal * k.overlap.nx - j.tangential * k.overlap.ny,
                fy = j.normal * k.overlap.ny + j.tangential * k.overlap.nx;
-  c->on_a = (struct wrench){-fx, -fy, -k.overlap.arm[0] * j.tangential};
-  if (!contact_is_with_side(c->b)) c->on_b = (struct wrench){fx, fy, -k.overlap.arm[1] * j.tangential};
+  const double *arm = k.overlap.arm, *offset = k.overlap.offset;
+  c->on_a = (struct wrench){-fx, -fy, offset[0] * j.normal - arm[0] * j.tangential};
+  if (!contact_is_with_side(c->b)) c->on_b = (struct wrench){fx, fy, -offset[1] * j.normal - arm[1] * j.tangential};
 }
 
 static void add_wrench(struct wrench *sum, const struct wrench *w)
@@ -289,6 +293,7 @@ static void move_disc(struct contacts *c, const struct exchange *e, struct discs
   at->omega[i] += h * r->domega + dv[2];
   at->x[i] += h * at->vx[i];
   at->y[i] += h * at->vy[i];
+  at->angle[i] += h * at->omega[i];
   c->impulse[i] = (struct wrench){0};
 }
 

@@ -1,6 +1,8 @@
-/* Geometry and kinematics of a contact between discs a and b, or between disc a and a side. Overlap, normal n (from
- * a to b) and arms a_a, a_b of the contact point come from the shapes; a_a + a_b is the distance of the centroids. t
- * = (-n_y, n_x). */
+/* Geometry and kinematics of a contact between bodies a and b, or between body a and a side. Overlap, normal n (from a to
+ * b), arms a and offsets o of the contact point come from the shapes (solid/shape.h); t = (-n_y, n_x). With the velocities of
+ * the contact point on both bodies,
+ *   approach speed = (V_a - V_b) . n - omega_a o_a + omega_b o_b,
+ *   slip speed     = (V_a - V_b) . t + omega_a a_a + omega_b a_b. */
 #ifndef DELBM_CONTACT_GEOMETRY_H
 #define DELBM_CONTACT_GEOMETRY_H
 
@@ -9,17 +11,15 @@
 
 /* [disc] */
 struct disc_motions {
-  double *x, *y, *vx, *vy, *omega;
+  double *x, *y, *angle, *vx, *vy, *omega;
 };
 
 struct kinematics {
-  struct body_overlap overlap; /* n, arms, area (solid/shape.h) */
-  double radius[2];            /* of a and b; infinite for a side */
-  double approach_speed;       /* (V_a - V_b) . n */
-  double slip_speed;           /* (V_a - V_b) . t + omega_a a_a + omega_b a_b */
-  double mean_speed;           /* w: mean approach speed over the sub-step without contacts */
-  double compliance;           /* c: separation speed per impulse along n, with the inertia of the coupled fluid */
-  double damping;              /* eta (law.h) */
+  struct body_overlap overlap;
+  double approach_speed, slip_speed;
+  double mean_speed; /* w: mean approach speed over the sub-step without contacts */
+  double compliance; /* c: separation speed per impulse along n, with the inertia of the coupled fluid */
+  double damping;    /* eta (law.h) */
 };
 
 static inline bool contact_is_with_side(uint32_t b)
@@ -27,7 +27,7 @@ static inline bool contact_is_with_side(uint32_t b)
   return b >= contact_sides;
 }
 
-/* Sets overlap, radius, approach_speed and slip_speed. */
+/* Sets overlap, approach_speed and slip_speed. */
 struct kinematics kinematics_of(const struct scene *scene, const struct discs *discs, uint32_t a, uint32_t b,
                                 const struct disc_motions *at);
 

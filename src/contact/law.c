@@ -14,13 +14,13 @@ static struct spring spring_of_area(const struct contact_law *law, const struct 
  * the stiffness is equal to the area law's. */
 static struct spring spring_of_overlap(const struct contact_law *law, const struct kinematics *k)
 {
-  const double design = 0.01 * fmin(k->radius[0], k->radius[1]);
-  const bool side = isinf(k->radius[1]);
-  const double touch = side ? k->radius[0] : k->radius[0] + k->radius[1];
-  const struct lens lens =
-      side ? lens_of_wall(k->radius[0], touch - design) : lens_of_discs(k->radius[0], k->radius[1], touch - design);
+  const double design = 0.01 * fmin(k->overlap.radius[0], k->overlap.radius[1]);
+  const bool side = isinf(k->overlap.radius[1]);
+  const double touch = side ? k->overlap.radius[0] : k->overlap.radius[0] + k->overlap.radius[1];
+  const struct lens lens = side ? lens_of_wall(k->overlap.radius[0], touch - design)
+                                : lens_of_discs(k->overlap.radius[0], k->overlap.radius[1], touch - design);
   const double stiffness = law->alpha_k_n * lens.chord;
-  return (struct spring){stiffness * fmax(0, touch - k->overlap.distance), stiffness};
+  return (struct spring){stiffness * fmax(0, k->overlap.depth), stiffness};
 }
 
 /* In the order of the choices of the key contact.law. */
@@ -59,11 +59,9 @@ struct contact_impulse contact_law_impulse(const struct contact_law *law, struct
 
 struct spring contact_spring_at(const struct contact_law *law, const double radius[2], double overlap)
 {
-  struct kinematics k = {.radius = {radius[0], radius[1]}};
-  const bool side = isinf(radius[1]);
-  k.overlap.distance = (side ? radius[0] : radius[0] + radius[1]) - overlap;
-  k.overlap.lens =
-      side ? lens_of_wall(radius[0], k.overlap.distance) : lens_of_discs(radius[0], radius[1], k.overlap.distance);
+  struct kinematics k = {.overlap = {.depth = overlap, .radius = {radius[0], radius[1]}}};
+  k.overlap.lens = isinf(radius[1]) ? lens_of_wall(radius[0], radius[0] - overlap)
+                                    : lens_of_discs(radius[0], radius[1], radius[0] + radius[1] - overlap);
   return law->force_of(law, &k);
 }
 

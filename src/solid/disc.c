@@ -24,28 +24,38 @@ struct shape_box disc_box(const struct shape *disc, const struct pose *pose)
 
 /* Distances from the centres to the chord of the lens; if one disc is inside the other, to the centre of the smaller
  * one. */
-static void find_arms(double ra, double rb, struct body_overlap *o)
+static void find_arms(double distance, struct body_overlap *o)
 {
-  const double difference = ra - rb;
-  const bool inside = o->distance <= fabs(difference);
-  o->arm[0] = inside ? (ra > rb ? o->distance : 0) : 0.5 * (o->distance + difference * (ra + rb) / o->distance);
-  o->arm[1] = o->distance - o->arm[0];
+  const double ra = o->radius[0], rb = o->radius[1], difference = ra - rb;
+  const bool inside = distance <= fabs(difference);
+  o->arm[0] = inside ? (ra > rb ? distance : 0) : 0.5 * (distance + difference * (ra + rb) / distance);
+  o->arm[1] = distance - o->arm[0];
 }
 
-struct body_overlap disc_overlap(const struct shape *disc, const struct shape *other, double dx, double dy)
+struct body_overlap disc_overlap(const struct shape *disc, const struct pose *pose, const struct shape *other,
+                                 const struct pose *other_pose)
 {
-  struct body_overlap o = {.distance = sqrt(dx * dx + dy * dy), .nx = 1};
-  o.lens = lens_of_discs(disc->radius, other->radius, o.distance);
-  if (o.distance > 0) {
-    o.nx = dx / o.distance;
-    o.ny = dy / o.distance;
+  const double dx = other_pose->x - pose->x, dy = other_pose->y - pose->y, distance = sqrt(dx * dx + dy * dy);
+  struct body_overlap o = {.lens = lens_of_discs(disc->radius, other->radius, distance),
+                           .depth = disc->radius + other->radius - distance,
+                           .nx = 1,
+                           .radius = {disc->radius, other->radius}};
+  if (distance > 0) {
+    o.nx = dx / distance;
+    o.ny = dy / distance;
   }
-  find_arms(disc->radius, other->radius, &o);
+  find_arms(distance, &o);
   return o;
 }
 
-struct body_overlap disc_overlap_half_plane(const struct shape *disc, double distance, double nx, double ny)
+struct body_overlap disc_overlap_half_plane(const struct shape *disc, const struct pose *pose, double distance,
+                                            double nx, double ny)
 {
-  return (struct body_overlap){
-      .lens = lens_of_wall(disc->radius, distance), .distance = distance, .nx = nx, .ny = ny, .arm = {distance, 0}};
+  (void)pose;
+  return (struct body_overlap){.lens = lens_of_wall(disc->radius, distance),
+                               .depth = disc->radius - distance,
+                               .nx = nx,
+                               .ny = ny,
+                               .arm = {distance, 0},
+                               .radius = {disc->radius, INFINITY}};
 }

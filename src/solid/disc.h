@@ -7,7 +7,9 @@
 double disc_area(const struct shape *disc);
 double disc_gyration2(const struct shape *disc);
 struct shape_box disc_box(const struct shape *disc, const struct pose *pose);
-struct body_overlap disc_overlap(const struct shape *disc, const struct shape *other, double dx, double dy);
-struct body_overlap disc_overlap_half_plane(const struct shape *disc, double distance, double nx, double ny);
+struct body_overlap disc_overlap(const struct shape *disc, const struct pose *pose, const struct shape *other,
+                                 const struct pose *other_pose);
+struct body_overlap disc_overlap_half_plane(const struct shape *disc, const struct pose *pose, double distance,
+                                            double nx, double ny);
 
 #endif

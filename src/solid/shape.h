@@ -2,9 +2,8 @@
  * shape_kind. Shapes are convex, so that a body has one run of cells in each row.
  *
  * A new shape is one file that defines a struct shape_kind, the fields of struct shape for its measures, and a line in
- * discs.c that chooses it. The present limits of the interface: a contact is between shapes of one kind, and its point
- * lies on the normal through both centroids, as for discs; angles do not change in sub-steps. Estimates before a run
- * (disc_spec_area), pictures and tables know discs only. Lattice units; angles in radians, counter-clockwise. */
+ * discs.c that chooses it. Estimates before a run (disc_spec_area), pictures and tables know discs only. Lattice units;
+ * angles in radians, counter-clockwise. */
 #ifndef DELBM_SOLID_SHAPE_H
 #define DELBM_SOLID_SHAPE_H
 
@@ -51,14 +50,15 @@ struct lens {
   double area, chord;
 };
 
-/* An overlap as a contact: the unit normal n from this body to the other body or the side, and the contact point, on
- * the line through the centroid along n, at the distances arm[0] from the centroid of this body and arm[1] from the
- * other centroid (0 for a side). */
+/* An overlap as a contact. n: unit normal from this body to the other body or the side; t = (-n_y, n_x). The contact point lies
+ * at arm[0] n + offset[0] t from the centroid of this body, at -arm[1] n + offset[1] t from the centroid of the other. */
 struct body_overlap {
   struct lens lens;
-  double distance; /* from centroid to centroid, or to the edge of the half plane */
+  double depth; /* along n; negative: a gap */
   double nx, ny;
   double arm[2];
+  double offset[2]; /* 0 for round shapes, so that a normal force has no torque */
+  double radius[2]; /* of curvature at the contact; infinite for a half plane */
 };
 
 struct shape_kind {
@@ -69,11 +69,13 @@ struct shape_kind {
   struct shape_box (*box)(const struct shape *shape, const struct pose *pose);
   shape_extents *extents;
   shape_fractions *fractions;
-  /* With another body of the same kind at (dx, dy) from this centroid; for (0, 0) the normal is along x. */
-  struct body_overlap (*overlap)(const struct shape *shape, const struct shape *other, double dx, double dy);
+  /* With another body, of a kind that this kind knows; coincident centroids have n along x. */
+  struct body_overlap (*overlap)(const struct shape *shape, const struct pose *pose, const struct shape *other,
+                                 const struct pose *other_pose);
   /* With the half plane of outward normal (nx, ny) at `distance` from the centroid; negative if the centroid is
    * inside. */
-  struct body_overlap (*overlap_half_plane)(const struct shape *shape, double distance, double nx, double ny);
+  struct body_overlap (*overlap_half_plane)(const struct shape *shape, const struct pose *pose, double distance,
+                                            double nx, double ny);
 };
 
 #endif
