@@ -1,8 +1,8 @@
-/* What finding contacts costs (the paper's Fig. 6): a list of neighbours that is built from the grid that occupation paints, from linked
- * cells of 200 x 200, and from linked cells of one diameter; a step's part of it, and one building of the list; how the overlap areas by
- * `cells` and `lens` compare; and the whole contact stage in a run. Discs stand on a jittered grid, some of them touching, and creep by
- * up to 0.02 cells a step, about as fast as discs settle, so that the list is built anew every 20 to 30 steps. Each search's pairs are
- * held against those of all pairs. */
+/* Cost of the contact search (the paper's Fig. 6): a pair list from the grid of the occupation, from linked cells of 200 x 200, and
+ * from linked cells of one diameter; mean cost per step, and cost of one construction of the list; overlap areas by `cells` and
+ * `lens`; and the whole contact stage in a run. Discs are on a jittered grid, some in contact, and creep by up to 0.02 cells a
+ * step, about the speed of settling, so that a list lasts 20 to 30 steps. The pairs of each search are compared with a search
+ * over all pairs. */
 #include "base/clock.h"
 #include "bench.h"
 #include "contact/cells_area.h"
@@ -107,7 +107,7 @@ static double gap(const struct discs *d, size_t a, size_t b)
   return sqrt(dx * dx + dy * dy) - d->radius[a] - d->radius[b];
 }
 
-/* Whether each list holds all pairs that are wanted, which `count` counts. */
+/* True if each list contains all pairs below the gap; *count: their number. */
 static bool verify_all(const struct crowd *c, size_t *count, struct status *status)
 {
   *count = 0;

@@ -511,7 +511,7 @@ Test(fields, that_do_not_fit_on_the_disk_leave_the_earlier_ones)
   cr_expect_eq(shell("grep -qE '^delbm: cannot write disk/cut/.*: No space left on device$' err"), 0);
 }
 
-/* A limit on the size of a file, blocks of 512 bytes, is above that of a checkpoint and below that of the joined file. */
+/* Limit on file sizes, in blocks of 512 bytes: between the sizes of a checkpoint and of the joined file. */
 Test(fields, that_cannot_be_joined_stay_whole_and_a_resumed_run_joins_them)
 {
   static const char *const run = "run flow.yaml --set output.fields.every=5 --set output.checkpoint.every=100 --quiet";

@@ -86,7 +86,7 @@ static double force_at(const struct contact_law *law, double overlap, double rad
   return contact_spring_at(law, (const double[2]){radius, alone ? INFINITY : radius}, overlap).force;
 }
 
-/* Overlap at which the contact law carries the load. */
+/* Overlap at which the contact force is equal to the load. */
 static double overlap_under(double load, const struct contact_law *law, double radius, bool alone)
 {
   double low = 0, high = radius;

@@ -88,7 +88,7 @@ struct scene {
     double force[2]; /* per unit mass */
     enum collision collision;
     struct rates rates;
-    double magic; /* trt, adaptive: the parameter that s_q follows from; 0: rates as they are */
+    double magic; /* magic parameter of trt and adaptive, which determines s_q; 0: s_q is given */
     enum precision precision;
     bool zero_flux;
     char *kernel; /* forced kernel variant, or NULL for the best that the machine runs */
