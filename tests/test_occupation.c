@@ -597,8 +597,7 @@ static double gap_between(const struct painting *p, uint32_t a, uint32_t b)
   return hypot(dx, dy) - p->discs.radius[a] - p->discs.radius[b];
 }
 
-/* A disc and another that reaches it across two sides of a periodic box at once share cells with two images, of which a contact is
- * with the nearest. */
+/* True if neither disc can share cells with two images of the other: a contact is with the nearest image alone. */
 static bool is_small(const struct crowd *c, uint32_t a, uint32_t b)
 {
   return c->p.discs.radius[a] + c->p.discs.radius[b] < CROWD_NY / 2 - 2;
@@ -657,8 +656,8 @@ static size_t check_pairs(const struct pair_list *pairs, const struct painting *
   return count;
 }
 
-/* Lists that are brought up to date, by any search, hold all pairs closer than the length that was asked for; new ones also those
- * that the margin adds, and no others. */
+/* Expects, for each search, a new list to be all pairs below length plus margin, and an updated list to contain all pairs
+ * below the length; returns the number of pairs. */
 static size_t check_search(enum sides sides, double near, double edge, unsigned long seed)
 {
   struct status status;

@@ -462,7 +462,7 @@ Test(program, info_warns_of_what_the_maps_found_to_fail)
                  0, "%s: no note", cases[k].settings);
 }
 
-/* A place of a map by form, of which info warns exactly where the recorded run did not complete. */
+/* Expects a note of info if and only if the recorded run of the map did not complete. */
 static void expect_warning_as_in_map(const char *report, const char *map, const char *form, int column,
                                      const char *settings)
 {
