@@ -19,8 +19,8 @@ struct impactor {
 static int spring_rate(double time, const double state[], double rate[], void *context)
 {
   const struct impactor *s = context;
-  const double spring = contact_spring_at(&s->law, (const double[2]){radius, radius}, state[0]).force;
-  const double force = fmax(0, spring + contact_damping(&s->law, 1 / s->mass) * state[1]);
+  const struct spring spring = contact_spring_at(&s->law, (const double[2]){radius, radius}, state[0]);
+  const double force = fmax(0, spring.force + contact_damping(&s->law, 1 / s->mass, spring.stiffness) * state[1]);
   (void)time;
   rate[0] = state[1];
   rate[1] = state[0] > 0 ? -force / s->mass : 0;

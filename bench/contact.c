@@ -47,7 +47,7 @@ static bool allocate(struct crowd *c, struct status *status)
   for (enum search k = 0; k < SEARCH_COUNT; k++) {
     c->scene.contact.search = k == GRID ? SEARCH_GRID : SEARCH_LINKED_CELL;
     c->scene.contact.edge = edges[k];
-    if (!pairs_create(&c->pairs[k], &c->scene, &c->discs, c->near, status)) return false;
+    if (!pairs_create(&c->pairs[k], &c->scene, &c->discs, true, c->near, status)) return false;
   }
   c->vx = calloc(c->discs.count, sizeof *c->vx);
   c->vy = calloc(c->discs.count, sizeof *c->vy);
@@ -93,7 +93,7 @@ static bool search_all(struct crowd *c, double *occupation_ms, double ms[SEARCH_
   for (enum search k = 0; k < SEARCH_COUNT && !team.failed; k++) {
     since = clock_now();
 #pragma omp parallel
-    pairs_update(&c->pairs[k], &c->occupation, &c->discs, &team);
+    pairs_update(&c->pairs[k], &c->occupation, &c->discs, &team, &(bool){false});
     ms[k] = 1e3 * (clock_now() - since);
   }
   if (team.failed) *status = team.first;

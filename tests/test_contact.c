@@ -1,10 +1,11 @@
 /* Contact: overlap areas, the force law, and whole impacts of discs with discs and walls. */
 #include "case/case_overlaps.h"
 #include "contact/cells_area.h"
-#include "contact/law.h"
+#include "contact/contact_kernel.h"
 #include "drive.h"
 #include "scenes.h"
 #include "solid/lens.h"
+#include "solid/solid_kernel.h"
 
 #include <criterion/criterion.h>
 #include <gsl/gsl_rng.h>
@@ -194,93 +195,236 @@ static struct contact_law law_of(double stiffness, double alpha, double damping,
   return contact_law_of(&scene);
 }
 
-/* Force of a contact of this overlap area whose spring has stored any amount of energy. */
-static double force_of(const struct contact_law *law, double area, double approach_speed, double damping)
+/* A pair of free discs beside each other as the one entry of a contact table. */
+struct lone {
+  struct scene scene;
+  struct discs discs;
+  struct pair pair;
+  struct contact_table table;
+  struct contact_law law;
+  struct response response[2];
+  struct shape_kind kind;
+  struct contact_pass pass;
+  const struct contact_kernel *kernel;
+};
+
+static void lone_create(struct lone *l, const struct scene *contact, const double radius[2], double overlap,
+                        double angle)
 {
-  struct contact_state state = {.stored = INFINITY};
-  const struct kinematics k = {.overlap = {.lens = {.area = area}},
-                               .approach_speed = approach_speed,
-                               .mean_speed = approach_speed,
-                               .compliance = 1,
-                               .damping = damping};
-  return contact_law_impulse(law, &state, &k, 1).normal;
+  struct status status;
+  const double distance = radius[0] + radius[1] - overlap;
+  *l = (struct lone){.scene = scene_box(100, 100, 0.1, SIDES_CLOSED), .pair = {0, 1}};
+  l->scene.contact = contact->contact;
+  scene_add_disc(&l->scene, radius[0], 2, 50, 50);
+  scene_add_disc(&l->scene, radius[1], 3, 50 + distance * cos(angle), 50 + distance * sin(angle));
+  const struct pair_list list = {.pairs = &l->pair, .count = 1};
+  l->law = contact_law_of(&l->scene);
+  cr_assert(discs_create(&l->discs, &l->scene, &status) && table_create(&l->table, 2, &status) &&
+                table_build(&l->table, &l->scene, &l->discs, &list, &(struct contact_states){0}, &status),
+            "%s", status.message);
+  l->table.has_spin = true;
+  for (size_t block = 0; block < l->table.blocks; block++) table_fill(&l->table, &l->scene, &l->discs, &l->law, block);
+  for (int k = 0; k < 2; k++)
+    l->response[k] =
+        (struct response){.xx = 1 / l->discs.mass[k], .yy = 1 / l->discs.mass[k], .ww = 1 / l->discs.inertia[k]};
+  l->kind = *l->discs.shape[0].kind;
+  l->kernel = contact_kernel_find(NULL);
+  const struct discs *d = &l->discs;
+  l->pass = (struct contact_pass){.table = &l->table,
+                                  .scene = &l->scene,
+                                  .law = &l->law,
+                                  .kind = &l->kind,
+                                  .response = l->response,
+                                  .at = {d->x, d->y, d->angle, d->vx, d->vy, d->omega},
+                                  .within = 1,
+                                  .moved = 1,
+                                  .h = 1,
+                                  .duration = 1};
 }
 
-/* Contact points off the line of centroids, as of shapes that are not round. */
-Test(geometry, compliance_is_the_separation_speed_at_the_contact_point_per_impulse)
+static void lone_destroy(struct lone *l)
 {
+  table_destroy(&l->table);
+  discs_destroy(&l->discs);
+  scene_clear(&l->scene);
+}
+
+static void lone_act(struct lone *l)
+{
+  double overlap = 0;
+  l->kernel->select(&l->pass, 0);
+  l->kernel->impulses(&l->pass, 0, &overlap);
+}
+
+/* Impulse on b along the direction from a to b. */
+static double lone_normal(const struct lone *l, double angle)
+{
+  return l->table.fx[0] * cos(angle) + l->table.fy[0] * sin(angle);
+}
+
+/* Contact points off the line of centroids, as of shapes that are not round: offsets 2 and -1.5. */
+static void shifted_overlaps(const struct body_pairs *pairs, struct body_overlaps *o)
+{
+  solid_kernel_find(NULL)->disc.overlaps(pairs, o);
+  for (int k = 0; k < pairs->count; k++) {
+    o->offset[0][k] = 2;
+    o->offset[1][k] = -1.5;
+  }
+}
+
+/* Approach speed at the contact point at these offsets. */
+static double approach_of(double v[2][3], double nx, double ny, const double offset[2])
+{
+  double speed = 0;
+  for (int end = 0; end < 2; end++)
+    speed += (end ? -1 : 1) * (v[end][0] * nx + v[end][1] * ny - offset[end] * v[end][2]);
+  return speed;
+}
+
+/* The limit of an impulse by an empty store of energy reverses the approach speed, whatever the response. */
+Test(law, impulses_without_stored_energy_reverse_the_approach_at_the_contact_point)
+{
+  static const double offset[2] = {2, -1.5}, radius[2] = {6, 8};
   const unsigned long seed = 7;
   gsl_rng *random = random_from(seed);
+  const struct scene stiff = {.contact = {.stiffness = 1e9, .alpha = 0.3, .tangential_ratio = 0.8}};
   for (int n = 0; n < 1000; n++) {
-    struct response r[2];
+    struct lone l;
     const double angle = between(random, 0, 2 * M_PI), nx = cos(angle), ny = sin(angle);
-    struct kinematics k = {.overlap = {.nx = nx, .ny = ny, .offset = {between(random, -3, 3), between(random, -3, 3)}}};
-    double separation = 0;
-    for (int end = 0; end < 2; end++) {
-      const double sign = end ? 1 : -1, offset = k.overlap.offset[end];
-      double dv[3];
-      r[end] = (struct response){.xx = between(random, 1, 2),
-                                 .xy = between(random, -1, 1),
-                                 .xw = between(random, -1, 1),
-                                 .yy = between(random, 1, 2),
-                                 .yw = between(random, -1, 1),
-                                 .ww = between(random, 1, 2)};
-      response_to(&r[end], (const double[3]){sign * nx, sign * ny, -sign * offset}, dv);
-      separation += sign * (dv[0] * nx + dv[1] * ny - offset * dv[2]);
+    lone_create(&l, &stiff, radius, 0.3, angle);
+    l.kind.round = false;
+    l.kind.overlaps = shifted_overlaps;
+    double v[2][3], dv[3], *const arrays[3] = {l.discs.vx, l.discs.vy, l.discs.omega};
+    for (size_t end = 0; end < 2; end++) {
+      for (int k = 0; k < 3; k++) arrays[k][end] = v[end][k] = between(random, -0.1, 0.1);
+      l.response[end] = (struct response){.xx = between(random, 1, 2),
+                                          .xy = between(random, -0.5, 0.5),
+                                          .xw = between(random, -0.3, 0.3),
+                                          .yy = between(random, 1, 2),
+                                          .yw = between(random, -0.3, 0.3),
+                                          .ww = between(random, 1, 2)};
     }
-    const struct exchange exchange = {.response = r};
-    kinematics_respond(&k, &exchange, 0, 1, 0);
-    cr_expect_float_eq(k.compliance, separation, 1e-13 * 20, "seed %lu: %g, %g", seed, k.compliance, separation);
+    const double before = approach_of(v, nx, ny, offset);
+    lone_act(&l);
+    for (int end = 0; end < 2; end++) {
+      const double sign = end ? 1 : -1, torque = end ? l.table.torque_b[0] : l.table.torque_a[0];
+      response_to(&l.response[end], (const double[3]){sign * l.table.fx[0], sign * l.table.fy[0], torque}, dv);
+      for (int k = 0; k < 3; k++) v[end][k] += dv[k];
+    }
+    const double after = approach_of(v, nx, ny, offset), expected = before > 0 ? -before : before;
+    cr_expect_float_eq(after, expected, 1e-12, "seed %lu: %g before, %g after", seed, before, after);
+    lone_destroy(&l);
   }
   gsl_rng_free(random);
 }
 
 Test(law, force_is_never_attractive_and_acts_on_overlap_only)
 {
+  static const double radius[2] = {6, 8};
   const unsigned long seed = 3;
   gsl_rng *random = random_from(seed);
-  for (int n = 0; n < 100000; n++) {
-    const double k = pow(10, between(random, -3, 6)), inverse_mass = pow(10, between(random, -6, 2));
-    const struct contact_law law = law_of(k, 0.3, between(random, 0, 2), n % 2);
-    const double area = pow(10, between(random, -12, 3)), approach = between(random, -0.5, 0.5);
-    const double force = force_of(&law, area, approach, contact_damping(&law, inverse_mass));
-    cr_expect(force >= 0, "seed %lu: %g", seed, force);
-    cr_expect(approach < 0 || force >= law.alpha_k_n * area, "seed %lu: damping helps the approach", seed);
-    cr_expect(approach > 0 || force <= law.alpha_k_n * area, "seed %lu: damping helps the parting", seed);
-    cr_expect_eq(force_of(&law, 0, approach, contact_damping(&law, inverse_mass)), 0);
+  for (int n = 0; n < 3000; n++) {
+    const double k = pow(10, between(random, -3, 6)), overlap = pow(10, between(random, -6, 0.3));
+    const struct scene scene = {.contact = {.law = (unsigned)n % 3,
+                                            .stiffness = k,
+                                            .alpha = 0.3,
+                                            .damping = between(random, 0, 2),
+                                            .damping_form = n / 3 % 2}};
+    struct lone l;
+    const double angle = between(random, 0, 2 * M_PI), approach = between(random, -0.5, 0.5);
+    lone_create(&l, &scene, radius, n % 7 ? overlap : -overlap, angle);
+    l.discs.vx[0] = approach * cos(angle);
+    l.discs.vy[0] = approach * sin(angle);
+    l.table.live[0] = 1;
+    l.table.stored[0] = 1e300; /* any force */
+    lone_act(&l);
+    const double force = lone_normal(&l, angle), spring = contact_spring_at(&l.law, radius, overlap).force;
+    cr_expect(force >= -1e-13 * spring, "seed %lu: %g", seed, force);
+    if (n % 7 == 0) cr_expect_eq(force, 0, "seed %lu: %g over a gap", seed, force);
+    const double slack = 1e-7 * spring;
+    cr_expect(n % 7 == 0 || approach < 0 || force >= spring - slack, "seed %lu: damping helps the approach", seed);
+    cr_expect(n % 7 == 0 || approach > 0 || force <= spring + slack, "seed %lu: damping helps the parting", seed);
+    lone_destroy(&l);
   }
   gsl_rng_free(random);
 }
 
-/* The spring alone, over sub-steps of any length, through an overlap that comes and goes at speeds that others set. */
-Test(law, impulses_without_stored_energy_return_none)
+/* The spring alone, through an overlap that comes and goes at speeds that others set. */
+Test(law, impulses_return_the_stored_energy_and_no_more)
 {
-  const struct contact_law law = law_of(10, 1, 0, DAMPING_CRITICAL);
-  struct contact_state state = {0};
-  struct kinematics k = {
-      .overlap = {.lens = {.area = 1}}, .approach_speed = -0.1, .mean_speed = -0.1, .compliance = 0.5};
-  cr_expect_eq(contact_law_impulse(&law, &state, &k, 1).normal, 0, "parting discs that have stored nothing");
-  state = (struct contact_state){.stored = 0.01};
-  const double j = contact_law_impulse(&law, &state, &k, 1).normal;
-  cr_expect_float_eq(j * (-0.1 - 0.5 * j / 2), -0.01, 1e-15, "impulse %g returns another energy than is stored", j);
+  static const double radius[2] = {5, 5};
+  const struct scene scene = {.contact = {.stiffness = 1e6, .alpha = 1}};
+  for (int stored = 0; stored < 2; stored++) {
+    struct lone l;
+    lone_create(&l, &scene, radius, 0.3, 0);
+    l.discs.vx[0] = -0.1;
+    l.table.live[0] = 1;
+    l.table.stored[0] = stored ? 0.01 : 0;
+    lone_act(&l);
+    const double j = l.table.fx[0], c = l.response[0].xx + l.response[1].xx;
+    cr_expect_float_eq(j * (-0.1 - c * j / 2), stored ? -0.01 : 0, 1e-15, "impulse %g", j);
+    lone_destroy(&l);
+  }
+}
+
+/* Whatever history and motion: |J_t| <= mu J_n, and both torques with the forces leave angular momentum as it is. */
+Test(friction, impulses_obey_coulomb_and_conserve_angular_momentum)
+{
+  const unsigned long seed = 5;
+  gsl_rng *random = random_from(seed);
+  int sliding = 0, sticking = 0;
+  for (int n = 0; n < 3000; n++) {
+    const double radius[2] = {between(random, 2, 9), between(random, 2, 9)}, angle = between(random, 0, 2 * M_PI);
+    const double overlap = between(random, 0.01, 0.5), friction = between(random, 0.05, 1);
+    const struct scene scene = {.contact = {.law = (unsigned)n % 3,
+                                            .stiffness = pow(10, between(random, -2, 3)),
+                                            .damping = 0.3,
+                                            .friction = friction,
+                                            .tangential_ratio = 0.8,
+                                            .rolling_friction = n % 2 ? 0.1 : 0}};
+    struct lone l;
+    lone_create(&l, &scene, radius, overlap, angle);
+    for (int end = 0; end < 2; end++) {
+      l.discs.vx[end] = between(random, -0.02, 0.02);
+      l.discs.vy[end] = between(random, -0.02, 0.02);
+      l.discs.omega[end] = between(random, -0.01, 0.01);
+    }
+    l.table.live[0] = 1;
+    l.table.stored[0] = 1e3;
+    l.table.shear[0] = between(random, -1, 1);
+    l.table.shear_stiffness[0] = l.table.moment_stiffness[0] = 1;
+    l.table.moment[0] = between(random, -1, 1);
+    lone_act(&l);
+    const struct contact_table *t = &l.table;
+    const double nx = cos(angle), ny = sin(angle), jn = lone_normal(&l, angle);
+    const double jt = -t->fx[0] * ny + t->fy[0] * nx, distance = radius[0] + radius[1] - overlap;
+    const double turned = t->torque_a[0] + t->torque_b[0] + distance * jt;
+    cr_expect(fabs(jt) <= friction * jn * (1 + 1e-12), "seed %lu: %g beyond %g times %g", seed, jt, friction, jn);
+    cr_expect_float_eq(turned, 0, 1e-14 * (1 + 20 * jn), "seed %lu: %g", seed, turned);
+    sliding += jn > 0 && fabs(jt) > 0.999 * friction * jn;
+    sticking += jn > 0 && fabs(jt) < 0.9 * friction * jn;
+    lone_destroy(&l);
+  }
+  cr_expect(sliding > 100 && sticking > 100, "%d slide, %d stick", sliding, sticking);
+  gsl_rng_free(random);
 }
 
 Test(law, damping_is_critical_at_one_or_as_printed)
 {
   const double mi = 3, mj = 5, k = 7, reduced = mi * mj / (mi + mj);
   struct contact_law law = law_of(k, 1, 0.34, DAMPING_CRITICAL);
-  cr_expect_float_eq(contact_damping(&law, 1 / mi + 1 / mj), 2 * 0.34 * sqrt(k * reduced), 1e-14);
-  cr_expect_float_eq(contact_damping(&law, 1 / mi), 2 * 0.34 * sqrt(k * mi), 1e-14);
-  cr_expect_eq(contact_damping(&law, 0), 0);
+  cr_expect_float_eq(contact_damping(&law, 1 / mi + 1 / mj, 1), 2 * 0.34 * sqrt(k * reduced), 1e-14);
+  cr_expect_float_eq(contact_damping(&law, 1 / mi, 1), 2 * 0.34 * sqrt(k * mi), 1e-14);
+  cr_expect_eq(contact_damping(&law, 0, 1), 0);
   law.form = DAMPING_PRINTED;
-  cr_expect_float_eq(contact_damping(&law, 1 / mi + 1 / mj), 2 * 0.34 * sqrt(k * (mi + mj) / (mi * mj)), 1e-14);
+  cr_expect_float_eq(contact_damping(&law, 1 / mi + 1 / mj, 1), 2 * 0.34 * sqrt(k * (mi + mj) / (mi * mj)), 1e-14);
 }
 
 /* The rate at which the force grows with the overlap sets the sub-steps; its integral is the energy of discs put into each other. */
 Test(law, stiffness_and_energy_are_those_of_the_force)
 {
   static const double radii[][2] = {{5, 5}, {3, 8}, {5, INFINITY}};
-  for (unsigned choice = 0; choice < 2; choice++) {
+  for (unsigned choice = 0; choice < 3; choice++) {
     const struct scene scene = {.contact = {.law = choice, .stiffness = 10, .alpha = 0.3}};
     const struct contact_law law = contact_law_of(&scene);
     for (int n = 0; n < 3; n++)
@@ -298,8 +442,8 @@ Test(law, stiffness_and_energy_are_those_of_the_force)
 /* A linear spring: the overlap itself as the area. Unclamped, the force may pull. */
 static double spring_acceleration(const struct contact_law *law, double mass, const double state[2], bool clamped)
 {
-  const double eta = contact_damping(law, 1 / mass);
-  return -(clamped ? force_of(law, state[0], state[1], eta) : law->k_n * state[0] + eta * state[1]) / mass;
+  const double force = law->k_n * state[0] + contact_damping(law, 1 / mass, 1) * state[1];
+  return -(clamped ? fmax(0, force) : force) / mass;
 }
 
 /* Restitution of an impact with this spring by fourth-order Runge-Kutta steps, until the overlap ends. */
@@ -515,8 +659,6 @@ Test(impact, with_damping_kinetic_energy_never_grows)
   }
 }
 
-enum { OVERLAP, LINEAR }; /* choices of contact.law */
-
 /* Steps that an undamped impact of two heavy discs takes from touch to parting, from where they are long after it; and the speed at
  * which they part over that at which they met. */
 static double impact_duration(unsigned law, double stiffness, double *restitution)
@@ -546,8 +688,8 @@ Test(law, linear_lasts_half_a_period_of_its_spring_and_parts_as_the_overlap_law_
   for (double half_period = 20; half_period <= 80; half_period *= 2) {
     const double k = mass * pow(M_PI / half_period, 2), stiffness = k / (0.3 * chord);
     double linear, overlap;
-    const double steps = impact_duration(LINEAR, stiffness, &linear);
-    impact_duration(OVERLAP, stiffness, &overlap);
+    const double steps = impact_duration(SPRING_LINEAR, stiffness, &linear);
+    impact_duration(SPRING_OVERLAP, stiffness, &overlap);
     cr_expect_float_eq(steps / half_period, 1, 0.01, "half period %g: %g steps", half_period, steps);
     cr_expect_float_eq(linear, overlap, 0.005, "half period %g: restitution %g, by the overlap law %g", half_period,
                        linear, overlap);
@@ -886,7 +1028,12 @@ Test(states, asked_for_in_order_are_found_each_and_no_other)
 
 Test(states, come_back_whole_and_are_refused_in_words_where_a_run_cannot_have_left_them)
 {
-  enum { DISCS = 6, HEAD = sizeof(uint64_t), ENTRY = 40, ROOM = HEAD + DISCS * (DISCS + 7) / 2 * ENTRY };
+  enum {
+    DISCS = 6,
+    HEAD = sizeof(uint64_t),
+    ENTRY = 8 + sizeof(struct contact_state),
+    ROOM = HEAD + DISCS * (DISCS + 7) / 2 * ENTRY
+  };
   static const double wrong[] = {NAN, INFINITY, -1};
   static const uint32_t far = DISCS;
   static const uint64_t many = DISCS * (DISCS + 7) / 2 + 1;

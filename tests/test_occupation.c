@@ -630,7 +630,7 @@ static void update(struct pair_list *pairs, const struct painting *p, int thread
   struct team team = {0};
   omp_set_dynamic(0);
 #pragma omp parallel num_threads(threads)
-  pairs_update(pairs, &p->occupation, &p->discs, &team);
+  pairs_update(pairs, &p->occupation, &p->discs, &team, &(bool){false});
   cr_assert_not(team.failed, "%s", team.first.message);
 }
 
@@ -669,12 +669,12 @@ static size_t check_search(enum sides sides, double near, double edge, unsigned 
   p.scene.contact.search = edge >= 0 ? SEARCH_LINKED_CELL : SEARCH_GRID;
   p.scene.contact.edge = edge;
   begin(&p);
-  cr_assert(pairs_create(&pairs, &p.scene, &p.discs, near, &status), "%s", status.message);
+  cr_assert(pairs_create(&pairs, &p.scene, &p.discs, true, near, &status), "%s", status.message);
   for (int step = 0; step < 60; step++) {
     paint(&p);
     update(&pairs, &p, 1 + step % 3);
     count += check_pairs(&pairs, &p, near, seed);
-    cr_assert(pairs_create(&fresh, &p.scene, &p.discs, near, &status), "%s", status.message);
+    cr_assert(pairs_create(&fresh, &p.scene, &p.discs, true, near, &status), "%s", status.message);
     update(&fresh, &p, 2);
     cr_expect_eq(check_pairs(&fresh, &p, near + pairs_margin, seed), fresh.count);
     pairs_destroy(&fresh);
@@ -713,7 +713,7 @@ Test(pairs, along_the_grid_are_found_across_periodic_sides)
       along[1] = into_box(&p, axis, along[0] + 5 + 1 + pairs_margin - 1e-6);
       across[0] = across[1] = (7 * n) % 600 / 20.0;
       paint(&p);
-      cr_assert(pairs_create(&pairs, &p.scene, &p.discs, 1, &status), "%s", status.message);
+      cr_assert(pairs_create(&pairs, &p.scene, &p.discs, true, 1, &status), "%s", status.message);
       update(&pairs, &p, 1);
       cr_expect_eq(pairs.count, 1, "axis %d, place %d", axis, n);
       pairs_destroy(&pairs);
@@ -729,7 +729,7 @@ Test(pairs, list_is_built_anew_when_a_disc_has_moved_half_the_margin_and_not_bef
   scene_add_disc(&p.scene, 5, 2, 39.8, 20);
   scene_add_disc(&p.scene, 5, 2, 20, 20);
   begin(&p);
-  cr_assert(pairs_create(&pairs, &p.scene, &p.discs, 1, &status), "%s", status.message);
+  cr_assert(pairs_create(&pairs, &p.scene, &p.discs, true, 1, &status), "%s", status.message);
   paint(&p);
   update(&pairs, &p, 2);
   p.discs.x[0] = 39.8 + 0.49 * pairs_margin - 40; /* across the side */

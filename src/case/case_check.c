@@ -149,8 +149,16 @@ static void check_substeps(struct draft *draft)
 /* Areas are used by contact.law: overlap only. */
 static void check_law(struct draft *draft)
 {
-  if (draft->scene.contact.area == AREA_CELLS && draft->scene.contact.law != 0)
+  if (draft->scene.contact.area == AREA_CELLS && draft->scene.contact.law != SPRING_OVERLAP)
     draft_refuse(draft, "contact.area", "lens: areas by cells are for contact.law: overlap");
+}
+
+/* Restitution determines the damping. */
+static void check_restitution(struct draft *draft)
+{
+  static const char *const paths[] = {"contact.damping", "contact.damping_form"};
+  if (draft_has(draft, "contact.restitution"))
+    refuse_if_given(draft, paths, 2, "no such key beside contact.restitution, which determines the damping");
 }
 
 static void check_zero_flux(struct draft *draft)
@@ -425,6 +433,7 @@ bool case_check(struct draft *draft, struct status *status)
   check_zero_flux(draft);
   check_substeps(draft);
   check_law(draft);
+  check_restitution(draft);
   check_fill(draft);
   check_shown(draft);
   check_density(draft);

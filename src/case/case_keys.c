@@ -52,7 +52,7 @@ bool key_is_required(const struct key *key)
 
 bool key_is_automatic(const struct key *key)
 {
-  return strcmp(key->fallback, "auto") == 0;
+  return strcmp(key->fallback, "auto") == 0 || strncmp(key->allowed, key_or_automatic, strlen(key_or_automatic)) == 0;
 }
 
 bool key_has_default(const struct key *key)

@@ -31,6 +31,9 @@ struct key {
   const char *help;
 };
 
+/* Prefix of `allowed` for keys with a default value that also allow the word auto. */
+static const char key_or_automatic[] = "auto or ";
+
 /* Role of a name in a section of the table. */
 enum key_role { ROLE_UNKNOWN, ROLE_KEY, ROLE_SECTION, ROLE_LIST };
 

@@ -50,6 +50,7 @@ static bool is_numeric(enum key_kind kind)
 static const char *parse_range(const char *text, struct range *range)
 {
   char *end;
+  if (strncmp(text, key_or_automatic, strlen(key_or_automatic)) == 0) text += strlen(key_or_automatic);
   range->low_open = *text == '(';
   range->low = strtod(text + 1, &end);
   range->high = strtod(end + 1, &end);

@@ -21,6 +21,8 @@ static bool is_idle(const struct key *key, const struct scene *scene)
   if (strcmp(key->path, "units.density") == 0) return scene->units.density == 0;
   if (key_within(key->path, "units")) return scene->units.dx == 0;
   if (strcmp(key->path, "fluid.rates.magic") == 0) return true;
+  if (strcmp(key->path, "contact.restitution") == 0) return scene->contact.restitution == 0;
+  if (strncmp(key->path, "contact.damping", strlen("contact.damping")) == 0) return scene->contact.restitution > 0;
   if (strcmp(key->path, "fluid.magic") == 0) return scene->fluid.magic == 0 || scene->fluid.collision == COLLISION_MRT;
   if (strcmp(key->path, "fluid.rates.q") == 0) return scene->fluid.collision != COLLISION_MRT;
   if (strcmp(key->path, "fluid.rates.e") == 0)

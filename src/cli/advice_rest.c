@@ -111,7 +111,7 @@ static void advise_overlap(const struct scene *scene, const struct sediment *s)
 {
   const struct contact_law law = contact_law_of(scene);
   struct contact_law unit = law; /* with k_n = 1 */
-  unit.alpha_k_n = scene->contact.alpha;
+  unit.k_n = 1;
   const bool alone = layers(scene, s) <= 1;
   double worst = 0, stiffness = 0;
   const struct disc_spec *before = NULL;

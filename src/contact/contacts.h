@@ -2,8 +2,7 @@
 #ifndef DELBM_CONTACT_CONTACTS_H
 #define DELBM_CONTACT_CONTACTS_H
 
-#include "contact/law.h"
-#include "contact/pairs.h"
+#include "contact/contact_kernel.h"
 
 /* The parts of the stage that a scene needs. */
 struct contact_needs {
@@ -12,34 +11,31 @@ struct contact_needs {
   bool substeps; /* more than one sub-step may be necessary */
 };
 
-struct contact;
-
 struct contacts {
   const struct scene *scene;
   struct contact_needs needs;
   struct contact_law law;
+  const struct contact_kernel *kernel;
   double within; /* gap from which a contact cannot act in the coming step */
   struct pair_list pairs;
-  struct contact *list; /* contacts that may act in the step: pairs, then sides */
-  size_t count, capacity;
-  int substeps; /* of this step */
-
-  struct contact_states states;
+  struct contact_table table;
+  struct contact_states saved; /* states to be taken over by the next table */
+  bool table_is_current;       /* the states are in the table, not in `saved` */
   bool placed; /* discs placed since the last step: new contacts start with the energy of their overlap */
 
   double *scratch; /* [thread][scratch_size] for areas by cells */
   size_t scratch_size, scratch_capacity;
 
-  /* the discs of the list within the sub-steps */
-  uint32_t *moving;
-  size_t moving_count;
-  uint8_t *is_moving;     /* [disc] */
-  struct disc_motions at; /* [disc], of moving discs */
-  struct wrench *impulse; /* [disc], of the sub-step */
-  double last_substep;    /* length of the last sub-step; 0 before the first */
-  int max_substeps;       /* over all steps */
-  bool leave;             /* decision after the list is made (team.h) */
-  bool leave_too_stiff;   /* decision after the sub-steps are counted */
+  struct contact_rates rates; /* of this step */
+  int substeps;               /* of this step */
+  double last_substep;        /* length of the last sub-step; 0 before the first */
+  uint8_t *is_moving;         /* [disc] by sub-steps */
+  struct disc_motions at;     /* [disc], of moving discs */
+
+  int max_substeps;     /* over all steps */
+  double max_overlap;   /* over all steps: overlap over the smaller radius */
+  bool leave;           /* decision after the table is built (team.h) */
+  bool leave_too_stiff; /* decision after the sub-steps are counted */
 };
 
 bool contacts_create(struct contacts *contacts, const struct scene *scene, struct contact_needs needs,

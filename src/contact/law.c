@@ -1,68 +1,82 @@
 #include "contact/law.h"
 
+#include "contact/restitution.h"
 #include "solid/lens.h"
 
 #include <math.h>
 
-/* (10): proportional to the overlap area. */
-static struct spring spring_of_area(const struct contact_law *law, const struct kinematics *k)
+static struct lens lens_at(const double radius[2], double overlap)
 {
-  return (struct spring){law->alpha_k_n * k->overlap.lens.area, law->alpha_k_n * k->overlap.lens.chord};
+  return isinf(radius[1]) ? lens_of_wall(radius[0], radius[0] - overlap)
+                          : lens_of_discs(radius[0], radius[1], radius[0] + radius[1] - overlap);
 }
 
-/* (8): F = alpha k_n c delta, delta the overlap, c the chord of the lens at delta = 1 % of the smaller radius, where
- * the stiffness is equal to the area law's. */
-static struct spring spring_of_overlap(const struct contact_law *law, const struct kinematics *k)
+/* f(beta) of (11) = (4 sqrt(2)/(3 pi)) (1 + beta^2)/(1 + beta)^2, symmetric in both radii. */
+static double alpha_of(const struct contact_law *law, const double radius[2])
 {
-  const double design = 0.01 * fmin(k->overlap.radius[0], k->overlap.radius[1]);
-  const bool side = isinf(k->overlap.radius[1]);
-  const double touch = side ? k->overlap.radius[0] : k->overlap.radius[0] + k->overlap.radius[1];
-  const struct lens lens = side ? lens_of_wall(k->overlap.radius[0], touch - design)
-                                : lens_of_discs(k->overlap.radius[0], k->overlap.radius[1], touch - design);
-  const double stiffness = law->alpha_k_n * lens.chord;
-  return (struct spring){stiffness * fmax(0, k->overlap.depth), stiffness};
+  if (law->alpha > 0) return law->alpha;
+  const double beta = isinf(radius[1]) ? 0 : radius[0] / radius[1];
+  return 4 * M_SQRT2 / (3 * M_PI) * (1 + beta * beta) / ((1 + beta) * (1 + beta));
 }
 
-/* In the order of the choices of the key contact.law. */
-static contact_spring *const springs[] = {spring_of_area, spring_of_overlap};
+static double area_factor(const double radius[2])
+{
+  (void)radius;
+  return 1;
+}
+
+static double hertz_factor(const double radius[2])
+{
+  const double reduced = 1 / (1 / radius[0] + 1 / radius[1]);
+  return 4. / 3 * sqrt(2 * reduced);
+}
+
+static double linear_factor(const double radius[2])
+{
+  return lens_at(radius, 0.01 * fmin(radius[0], radius[1])).chord;
+}
+
+/* Strength over alpha k_n, and the exponent of the overlap in the limit of small overlap. */
+static const struct {
+  double (*factor)(const double radius[2]);
+  double exponent;
+} laws[] = {
+    [SPRING_OVERLAP] = {area_factor, 1.5}, [SPRING_HERTZ] = {hertz_factor, 1.5}, [SPRING_LINEAR] = {linear_factor, 1}};
 
 struct contact_law contact_law_of(const struct scene *scene)
 {
-  return (struct contact_law){.force_of = springs[scene->contact.law],
-                              .alpha_k_n = scene->contact.alpha * scene->contact.stiffness,
-                              .k_n = scene->contact.stiffness,
-                              .damping = scene->contact.damping,
-                              .form = scene->contact.damping_form};
+  const double restitution = scene->contact.restitution;
+  struct contact_law law = {.spring = scene->contact.law,
+                            .k_n = scene->contact.stiffness,
+                            .alpha = scene->contact.alpha,
+                            .damping = scene->contact.damping,
+                            .by_rate = restitution > 0,
+                            .form = scene->contact.damping_form,
+                            .friction = scene->contact.friction,
+                            .tangential_ratio = scene->contact.tangential_ratio,
+                            .rolling_friction = scene->contact.rolling_friction};
+  if (law.by_rate) law.damping = restitution_damping(restitution, laws[law.spring].exponent);
+  return law;
 }
 
-double contact_damping(const struct contact_law *law, double inverse_mass)
+double contact_strength(const struct contact_law *law, const double radius[2])
+{
+  return alpha_of(law, radius) * law->k_n * laws[law->spring].factor(radius);
+}
+
+double contact_damping(const struct contact_law *law, double inverse_mass, double stiffness)
 {
   if (inverse_mass <= 0) return 0;
-  return 2 * law->damping * sqrt(law->form == DAMPING_CRITICAL ? law->k_n / inverse_mass : law->k_n * inverse_mass);
-}
-
-struct contact_impulse contact_law_impulse(const struct contact_law *law, struct contact_state *state,
-                                           const struct kinematics *k, double h)
-{
-  state_count_work(state, k->approach_speed);
-  if (k->overlap.lens.area <= 0) {
-    state->stored = 0;
-    return (struct contact_impulse){0};
-  }
-  const double spring = law->force_of(law, k).force, force = fmax(0, spring + k->damping * k->approach_speed);
-  const double max = state_max_impulse(state, k->mean_speed, k->compliance, h * k->damping);
-  state->approach_speed = k->approach_speed;
-  state->spring_impulse = fmin(h * spring, max);
-  state->impulse = fmin(h * force, max);
-  return (struct contact_impulse){.normal = state->impulse};
+  const double k = law->by_rate ? stiffness : law->k_n;
+  return 2 * law->damping * sqrt(law->by_rate || law->form == DAMPING_CRITICAL ? k / inverse_mass : k * inverse_mass);
 }
 
 struct spring contact_spring_at(const struct contact_law *law, const double radius[2], double overlap)
 {
-  struct kinematics k = {.overlap = {.depth = overlap, .radius = {radius[0], radius[1]}}};
-  k.overlap.lens = isinf(radius[1]) ? lens_of_wall(radius[0], radius[0] - overlap)
-                                    : lens_of_discs(radius[0], radius[1], radius[0] + radius[1] - overlap);
-  return law->force_of(law, &k);
+  const double strength = contact_strength(law, radius), depth = fmax(0, overlap);
+  const struct lens lens = lens_at(radius, depth);
+  return (struct spring){spring_force(law->spring, strength, depth, lens.area),
+                         spring_stiffness(law->spring, strength, depth, lens.chord)};
 }
 
 /* Simpson's rule in the root of the overlap: forces proportional to overlap^(3/2) are smooth in the root. */

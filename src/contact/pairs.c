@@ -8,16 +8,19 @@
 
 enum { RECENT = 512 }; /* size of the cache of tested pairs of a band */
 
-bool pairs_create(struct pair_list *list, const struct scene *scene, const struct discs *discs, double l,
+bool pairs_create(struct pair_list *list, const struct scene *scene, const struct discs *discs, bool searches, double l,
                   struct status *status)
 {
   const char *what = "the pairs";
-  *list = (struct pair_list){
-      .within = l + pairs_margin, .uses_linked_cells = scene->contact.search == SEARCH_LINKED_CELL, .stale = true};
+  *list = (struct pair_list){.within = l + pairs_margin,
+                             .uses_linked_cells = searches && scene->contact.search == SEARCH_LINKED_CELL,
+                             .searches = searches,
+                             .stale = true};
   const bool cells = !list->uses_linked_cells ||
                      linked_cell_create(&list->linked, scene, discs, scene->contact.edge, list->within, status);
   list->batch_count = list->uses_linked_cells ? (size_t)list->linked.cells[1]
-                                              : (size_t)((scene->domain.size[1] + BAND_ROWS - 1) / BAND_ROWS);
+                      : searches              ? (size_t)((scene->domain.size[1] + BAND_ROWS - 1) / BAND_ROWS)
+                                              : 0;
   if (cells && (list->x = memory_allocate(discs->count, sizeof *list->x, what, status)) &&
       (list->y = memory_allocate(discs->count, sizeof *list->y, what, status)) &&
       (list->next = memory_allocate(discs->count + 1, sizeof *list->next, what, status)) &&
@@ -165,7 +168,8 @@ static bool has_moved(const struct pair_list *list, const struct occupation *o, 
   return !(dx * dx + dy * dy <= pairs_margin * pairs_margin / 4);
 }
 
-bool pairs_update(struct pair_list *list, const struct occupation *o, const struct discs *d, struct team *team)
+bool pairs_update(struct pair_list *list, const struct occupation *o, const struct discs *d, struct team *team,
+                  bool *rebuilt)
 {
   struct status status;
 #pragma omp for schedule(static)
@@ -174,7 +178,8 @@ bool pairs_update(struct pair_list *list, const struct occupation *o, const stru
 #pragma omp atomic write
       list->stale = true;
     }
-  if (!list->stale) return true;
+  *rebuilt = list->stale;
+  if (!*rebuilt) return true;
 #pragma omp single
   if (list->uses_linked_cells) linked_cell_sort(&list->linked, d);
 #pragma omp for schedule(dynamic, 1)

@@ -20,11 +20,11 @@ struct pair_list {
   struct pair *pairs; /* a < b, each once */
   size_t count, capacity;
 
-  double within;             /* l + margin */
-  double *x, *y;             /* [disc] at the construction */
-  struct linked_cell linked; /* with search: linked-cell */
-  bool uses_linked_cells;
-  struct pair_batch *batches; /* [batch_count]: of a band of rows, or of a row of linked cells */
+  double within;                    /* l + margin */
+  double *x, *y;                    /* [disc] at the construction */
+  struct linked_cell linked;        /* with search: linked-cell */
+  bool uses_linked_cells, searches; /* false: the list stays empty, and tells of displacements alone */
+  struct pair_batch *batches;       /* [batch_count]: of a band of rows, or of a row of linked cells */
   size_t batch_count;
   struct pair *sorted; /* by a, with duplicates */
   size_t sorted_capacity;
@@ -32,14 +32,14 @@ struct pair_list {
   bool stale, leave; /* new construction needed; decision after the search (team.h) */
 };
 
-/* `l`: gap below which two discs may interact in a step. */
-bool pairs_create(struct pair_list *list, const struct scene *scene, const struct discs *discs, double l,
+/* `l`: gap below which two discs may interact in a step; without `searches` the list is always empty. */
+bool pairs_create(struct pair_list *list, const struct scene *scene, const struct discs *discs, bool searches, double l,
                   struct status *status);
 void pairs_destroy(struct pair_list *list);
 
-/* Updates the list; `occupation` is at the discs' positions. Called by all threads of a parallel region or outside
- * of one. */
+/* Updates the list; `occupation` is at the discs' positions. *rebuilt: the list was built anew. Called by all threads of a
+ * parallel region or outside of one. */
 bool pairs_update(struct pair_list *list, const struct occupation *occupation, const struct discs *discs,
-                  struct team *team);
+                  struct team *team, bool *rebuilt);
 
 #endif

@@ -51,8 +51,10 @@ static bool is_possible(const struct contact_states *s, size_t k, size_t discs)
   const bool in_order = k == 0 || precedes(s->list[k - 1].a, s->list[k - 1].b, entry->a, entry->b);
   const bool known = entry->a < discs && (entry->b >= contact_sides || (entry->a < entry->b && entry->b < discs));
   return in_order && known && state->stored >= 0 && state->impulse >= 0 && state->spring_impulse >= 0 &&
-         isfinite(state->stored) && isfinite(state->impulse) && isfinite(state->spring_impulse) &&
-         isfinite(state->approach_speed);
+         state->shear_stiffness >= 0 && state->moment_stiffness >= 0 && isfinite(state->stored) &&
+         isfinite(state->impulse) && isfinite(state->spring_impulse) && isfinite(state->approach_speed) &&
+         isfinite(state->shear) && isfinite(state->shear_stiffness) && isfinite(state->moment) &&
+         isfinite(state->moment_stiffness);
 }
 
 bool states_store(struct contact_states *s, size_t discs, struct store *store, struct status *status)

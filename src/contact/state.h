@@ -1,4 +1,4 @@
-/* State of a contact: the energy E stored in its spring.
+/* State of a contact between two sub-steps: the energy E stored in its normal spring, and the springs of friction.
  *
  * A spring whose force is a smooth function of the overlap returns its stored energy. A spring whose force jumps, as
  * with area by cells, or with too few sub-steps, might return more. So E is counted and limits the impulse J.
@@ -26,30 +26,37 @@ struct contact_state {
   double impulse;        /* J of the last sub-step */
   double spring_impulse; /* S */
   double approach_speed; /* before J */
+  /* friction (contact_kernel.c) */
+  double shear, shear_stiffness;   /* force of the tangential spring, and its stiffness */
+  double moment, moment_stiffness; /* torque of the rolling spring, and its stiffness */
 };
 
-/* Adds the work of the last impulse to E; `approach_speed` is after the impulse. */
-static inline void state_count_work(struct contact_state *state, double approach_speed)
+/* E after the work of the last impulse; `approach_speed` is after the impulse. */
+static inline double state_stored(double stored, double impulse, double spring_impulse, double speed_before,
+                                  double approach_speed)
 {
-  const double mean = 0.5 * (state->approach_speed + approach_speed);
-  const double damped = fmax(0, (state->impulse - state->spring_impulse) * mean);
-  state->stored = fmax(0, state->stored + state->impulse * mean - damped);
-  state->impulse = state->spring_impulse = 0;
+  const double mean = 0.5 * (speed_before + approach_speed), work = (impulse - spring_impulse) * mean;
+  const double left = stored + impulse * mean - (work > 0 ? work : 0);
+  return left > 0 ? left : 0;
 }
 
 /* Upper limit of J; `mean_speed` is w, `damper` J_d. */
-static inline double state_max_impulse(const struct contact_state *state, double mean_speed, double compliance,
-                                       double damper)
+static inline double state_max_impulse(double stored, double mean_speed, double compliance, double damper)
 {
   const double s = damper * compliance;
-  const double speed = sqrt((mean_speed * mean_speed + 2 * compliance * state->stored) / (1 + s * s));
-  return fmax(0, mean_speed + speed) / compliance;
+  const double sum = mean_speed + sqrt((mean_speed * mean_speed + 2 * compliance * stored) / (1 + s * s));
+  return (sum > 0 ? sum : 0) / compliance;
 }
 
 /* b >= contact_sides: a contact with the side b - contact_sides. */
 static const uint32_t contact_sides = UINT32_MAX - 3;
 
-/* States of active contacts between two steps, in the order of the contact list: pairs, then sides, by (a, b). */
+static inline bool contact_is_with_side(uint32_t b)
+{
+  return b >= contact_sides;
+}
+
+/* States of active contacts between two steps, in the order of the contact table: pairs, then sides, by (a, b). */
 struct contact_states {
   struct saved_state *list;
   size_t count, capacity;

@@ -4,12 +4,13 @@
 
 #include <math.h>
 
-int substeps_needed(const struct scene *scene, double stiffness, double damping, double compliance)
+int substeps_needed(const struct scene *scene, const struct contact_rates *rates)
 {
+  if (!rates->any) return 1;
   if (scene->contact.substeps > 0) return scene->contact.substeps;
-  const double half_period = M_PI / sqrt(fmax(stiffness * compliance, 1e-300)); /* of the undamped contact */
+  const double half_period = M_PI / sqrt(fmax(rates->spring, 1e-300)); /* of the undamped contact */
   const double for_spring = scene->contact.steps_per_contact / half_period;
-  const double for_damper = 2 * damping * compliance; /* damping * compliance * h <= 1/2; overshoot from 1 on */
+  const double for_damper = 2 * rates->damper; /* damping * compliance * h <= 1/2; overshoot from 1 on */
   return (int)fmin(fmax(1, ceil(fmax(for_spring, for_damper))), 1e9);
 }
 
@@ -25,7 +26,11 @@ int substeps_by_lens(const struct scene *scene)
   }
   if (!(min_mass < INFINITY)) return 1;
   const double stiffness = contact_spring_at(&law, (const double[2]){radius, INFINITY}, 1).stiffness;
-  return substeps_needed(scene, stiffness, contact_damping(&law, 2 / min_mass), 2 / min_mass);
+  const double compliance = 2 / min_mass, slip = 3 * law.tangential_ratio; /* c_t = 3 c_n for discs */
+  const struct contact_rates rates = {.any = true,
+                                      .spring = stiffness * compliance * (law.friction > 0 ? fmax(1, slip) : 1),
+                                      .damper = contact_damping(&law, compliance, stiffness) * compliance};
+  return substeps_needed(scene, &rates);
 }
 
 int substeps_max(const struct scene *scene)

@@ -5,9 +5,14 @@
 
 #include "model/scene.h"
 
-/* For a contact of this stiffness (force per overlap), damping coefficient and compliance (separation speed
- * per impulse; without fluid the inverse mass of relative motion). */
-int substeps_needed(const struct scene *scene, double stiffness, double damping, double compliance);
+/* Rates of contacts: the largest stiffness (force per overlap) times compliance (speed per impulse; without fluid the
+ * inverse mass of relative motion), and the largest damping coefficient times compliance. */
+struct contact_rates {
+  bool any; /* false: no contact may act */
+  double spring, damper;
+};
+
+int substeps_needed(const struct scene *scene, const struct contact_rates *rates);
 
 /* Maximum over the scene's discs, at an overlap of one cell. */
 int substeps_max(const struct scene *scene);

@@ -108,13 +108,15 @@ struct scene {
   } particles;
 
   struct {
-    unsigned law; /* row of the table of springs in contact/law.c */
+    unsigned law; /* enum contact_spring_law of contact/law_spring.h */
     enum contact_area area;
     enum contact_search search;
     double edge; /* of the linked cells; 0: one diameter */
     double stiffness;
-    double alpha;
-    double damping;
+    double alpha;       /* 0: of the radii of each pair */
+    double damping;     /* damping ratio */
+    double restitution; /* 0: given by the damping ratio */
+    double friction, tangential_ratio, rolling_friction;
     enum contact_damping damping_form;
     int substeps;             /* fixed number of sub-steps a step, 0: chosen from the stiffness */
     double steps_per_contact; /* target of that choice */

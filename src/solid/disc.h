@@ -1,4 +1,4 @@
-/* Members of struct shape_kind (shape.h) of a disc, except extents and fractions (disc_kernel.c). */
+/* Members of struct shape_kind (shape.h) of a disc, except those of disc_kernel.c. */
 #ifndef DELBM_SOLID_DISC_H
 #define DELBM_SOLID_DISC_H
 
@@ -7,9 +7,5 @@
 double disc_area(const struct shape *disc);
 double disc_gyration2(const struct shape *disc);
 struct shape_box disc_box(const struct shape *disc, const struct pose *pose);
-struct body_overlap disc_overlap(const struct shape *disc, const struct pose *pose, const struct shape *other,
-                                 const struct pose *other_pose);
-struct body_overlap disc_overlap_half_plane(const struct shape *disc, const struct pose *pose, double distance,
-                                            double nx, double ny);
 
 #endif

@@ -14,24 +14,13 @@
  *
  * Loops run over whole vectors of VECTOR elements without a scalar remainder, so that a cell's bits do not depend on
  * its position in a row. Functions write only to their arguments and the stack: threads need no locks. */
+#include "base/variant.h"
 #include "solid/disc.h"
 #include "solid/solid_kernel.h"
 
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
-
-#define PASTE(a, b)  a##_##b
-#define NAME(a, b)   PASTE(a, b)
-#define KERNEL(part) NAME(part, VARIANT)
-
-enum { VECTOR = 8 };
-
-/* n rounded up to whole vectors; the mask tells the compiler that such loops have no remainder. */
-static inline int whole_vectors(int n)
-{
-  return (n + VECTOR - 1) & -VECTOR;
-}
 
 /* (asin(s) - s)/s^3 as a polynomial in z = s^2 <= 1/4: interpolated at Chebyshev points from the series, error 2e-17.
  * */
@@ -234,6 +223,7 @@ static void KERNEL(weights)(const double *restrict eps, int count, struct weight
   for (int k = 0; k < n; k++) weight[k] = weight_of(law, eps[k]);
 }
 
+extern shape_overlaps KERNEL(disc_overlaps), KERNEL(disc_overlaps_half_plane); /* overlap_kernel.c */
 extern const struct solid_kernel KERNEL(solid_kernel);
 const struct solid_kernel KERNEL(solid_kernel) = {.disc = {.name = "disc",
                                                            .round = true,
@@ -242,6 +232,6 @@ const struct solid_kernel KERNEL(solid_kernel) = {.disc = {.name = "disc",
                                                            .box = disc_box,
                                                            .extents = KERNEL(extents),
                                                            .fractions = KERNEL(fractions),
-                                                           .overlap = disc_overlap,
-                                                           .overlap_half_plane = disc_overlap_half_plane},
+                                                           .overlaps = KERNEL(disc_overlaps),
+                                                           .overlaps_half_plane = KERNEL(disc_overlaps_half_plane)},
                                                   .weights = KERNEL(weights)};

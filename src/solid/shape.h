@@ -50,16 +50,29 @@ struct lens {
   double area, chord;
 };
 
-/* An overlap as a contact. n: unit normal from this body to the other body or the side; t = (-n_y, n_x). The contact point lies
- * at arm[0] n + offset[0] t from the centroid of this body, at -arm[1] n + offset[1] t from the centroid of the other. */
-struct body_overlap {
-  struct lens lens;
-  double depth; /* along n; negative: a gap */
-  double nx, ny;
-  double arm[2];
-  double offset[2]; /* 0 for round shapes, so that a normal force has no torque */
-  double radius[2]; /* of curvature at the contact; infinite for a half plane */
+enum { BODY_PAIRS = 64 }; /* in one call, at most */
+
+/* Relative places of pairs of bodies 0 and 1, or of bodies 0 and half planes. `count` is a multiple of 8. */
+struct body_pairs {
+  int count;
+  bool with_area;        /* the area is asked for */
+  double dx[BODY_PAIRS]; /* from centroid 0 to centroid 1; of a half plane: its unit outward normal */
+  double dy[BODY_PAIRS];
+  double distance[BODY_PAIRS];  /* of a half plane from centroid 0; negative if the centroid is inside */
+  double radius[2][BODY_PAIRS]; /* of the shapes' smallest circles */
 };
+
+/* Overlaps as contacts. n: unit normal from body 0 to body 1 or the half plane; t = (-n_y, n_x). The contact point lies at
+ * arm[0] n + offset[0] t from centroid 0, at -arm[1] n + offset[1] t from centroid 1. */
+struct body_overlaps {
+  double depth[BODY_PAIRS]; /* along n; negative: a gap */
+  double nx[BODY_PAIRS], ny[BODY_PAIRS];
+  double arm[2][BODY_PAIRS];    /* of a half plane, arm[1]: 0 */
+  double offset[2][BODY_PAIRS]; /* not written by round shapes: 0 */
+  double area[BODY_PAIRS];      /* if asked for */
+  double chord[BODY_PAIRS];     /* derivative of the area by the depth */
+};
+typedef void shape_overlaps(const struct body_pairs *pairs, struct body_overlaps *overlaps);
 
 struct shape_kind {
   const char *name;
@@ -69,13 +82,8 @@ struct shape_kind {
   struct shape_box (*box)(const struct shape *shape, const struct pose *pose);
   shape_extents *extents;
   shape_fractions *fractions;
-  /* With another body, of a kind that this kind knows; coincident centroids have n along x. */
-  struct body_overlap (*overlap)(const struct shape *shape, const struct pose *pose, const struct shape *other,
-                                 const struct pose *other_pose);
-  /* With the half plane of outward normal (nx, ny) at `distance` from the centroid; negative if the centroid is
-   * inside. */
-  struct body_overlap (*overlap_half_plane)(const struct shape *shape, const struct pose *pose, double distance,
-                                            double nx, double ny);
+  shape_overlaps *overlaps; /* two bodies of this kind; coincident centroids have n along x */
+  shape_overlaps *overlaps_half_plane;
 };
 
 #endif
