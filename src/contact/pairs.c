@@ -16,6 +16,10 @@ bool pairs_create(struct pair_list *list, const struct scene *scene, const struc
                              .uses_linked_cells = searches && scene->contact.search == SEARCH_LINKED_CELL,
                              .searches = searches,
                              .stale = true};
+  for (int axis = 0; axis < 2; axis++) {
+    list->size[axis] = scene->domain.size[axis];
+    list->periodic[axis] = scene_is_periodic(scene, axis);
+  }
   const bool cells = !list->uses_linked_cells ||
                      linked_cell_create(&list->linked, scene, discs, scene->contact.edge, list->within, status);
   list->batch_count = list->uses_linked_cells ? (size_t)list->linked.cells[1]
@@ -161,10 +165,10 @@ static bool join(struct pair_list *list, const struct discs *d, struct status *s
 }
 
 /* True if disc i has moved by more than half of the margin or its position is NAN. */
-static bool has_moved(const struct pair_list *list, const struct occupation *o, const struct discs *d, size_t i)
+static bool has_moved(const struct pair_list *list, const struct discs *d, size_t i)
 {
-  const double dx = nearest_image(d->x[i] - list->x[i], o->size[0], o->periodic[0]);
-  const double dy = nearest_image(d->y[i] - list->y[i], o->size[1], o->periodic[1]);
+  const double dx = nearest_image(d->x[i] - list->x[i], list->size[0], list->periodic[0]);
+  const double dy = nearest_image(d->y[i] - list->y[i], list->size[1], list->periodic[1]);
   return !(dx * dx + dy * dy <= pairs_margin * pairs_margin / 4);
 }
 
@@ -174,7 +178,7 @@ bool pairs_update(struct pair_list *list, const struct occupation *o, const stru
   struct status status;
 #pragma omp for schedule(static)
   for (size_t i = 0; i < d->count; i++)
-    if (has_moved(list, o, d, i)) {
+    if (has_moved(list, d, i)) {
 #pragma omp atomic write
       list->stale = true;
     }

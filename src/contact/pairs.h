@@ -20,7 +20,9 @@ struct pair_list {
   struct pair *pairs; /* a < b, each once */
   size_t count, capacity;
 
-  double within;                    /* l + margin */
+  double within; /* l + margin */
+  int size[2];   /* of the box */
+  bool periodic[2];
   double *x, *y;                    /* [disc] at the construction */
   struct linked_cell linked;        /* with search: linked-cell */
   bool uses_linked_cells, searches; /* false: the list stays empty, and tells of displacements alone */
@@ -37,8 +39,8 @@ bool pairs_create(struct pair_list *list, const struct scene *scene, const struc
                   struct status *status);
 void pairs_destroy(struct pair_list *list);
 
-/* Updates the list; `occupation` is at the discs' positions. *rebuilt: the list was built anew. Called by all threads of a
- * parallel region or outside of one. */
+/* Updates the list; `occupation`, which linked cells do not need, is at the discs' positions. *rebuilt: the list was
+ * built anew. Called by all threads of a parallel region or outside of one. */
 bool pairs_update(struct pair_list *list, const struct occupation *occupation, const struct discs *discs,
                   struct team *team, bool *rebuilt);
 

@@ -24,6 +24,7 @@ struct response {
 };
 
 struct exchange {
+  bool dry; /* without fluid: `response` is constant, and of the other arrays only `lag` exists */
   enum coupling_solve solve;
   double viscosity;
   double gravity[2];
@@ -34,6 +35,7 @@ struct exchange {
   double *last_exchange; /* explicit-averaged: exchange of the step before */
   double *mean_contact;  /* implicit: mean contact impulse C */
   double *deferred;      /* implicit, with light discs: deferred momentum p */
+  double *lag;           /* [disc], without fluid: steps from the time of the velocity to that of the position */
   bool has_last_exchange;
   bool leave_unsolved, leave_unmoved; /* decisions after the solve and after the motion (team.h) */
 };
@@ -45,7 +47,7 @@ void exchange_destroy(struct exchange *exchange);
 /* Saves or restores the state between two steps, for `discs` discs; the sums are recomputed from the fluid. */
 bool exchange_store(struct exchange *exchange, size_t discs, struct store *store, struct status *status);
 
-/* Computes the sums and solves, for all discs; called by all threads of a parallel region or outside of one.
+/* With fluid: computes the sums and solves, for all discs; called by all threads of a parallel region or outside of one.
  * `constants`: of the coming sweep. Fails when A is not positive definite: a disc too light and too small for its
  * cells, or diverged fluid. */
 bool stage_exchange(struct exchange *exchange, const struct sweep_constants *constants,
@@ -58,11 +60,15 @@ void response_to(const struct response *k, const double impulse[3], double dv[3]
  * from the response and the contact impulse (contact_fx, contact_fy, contact_torque). */
 void exchange_finish(struct exchange *exchange, struct discs *discs, size_t disc);
 
+/* Without fluid, at the end of a step in sub-steps of length h: see exchange.c. Changes position `to` and velocity. */
+void exchange_change_lag(struct exchange *exchange, struct discs *discs, size_t disc, double h, double to[2]);
+
 /* Adds the steady external force on a free disc: buoyant weight, and C of the implicit solve. In the sum over all
  * discs contact forces between free discs cancel. */
 void exchange_add_load(const struct exchange *exchange, const struct discs *discs, size_t disc, double load[2]);
 
-/* Adds (m - m_f) V + p; the sum over discs plus the momentum of all fluid, inside discs too, is conserved. */
+/* Adds (m - m_f) V + p, without fluid at the time of the position; the sum over discs plus the momentum of all fluid,
+ * inside discs too, is conserved. */
 void exchange_add_momentum(const struct exchange *exchange, const struct discs *discs, size_t disc, double momentum[2]);
 
 #endif

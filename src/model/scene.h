@@ -84,6 +84,7 @@ struct scene {
   } domain;
 
   struct {
+    bool none; /* dry discs without a lattice: the other members, coupling and output.fields have no meaning */
     double viscosity;
     double force[2]; /* per unit mass */
     enum collision collision;
@@ -159,6 +160,12 @@ double scene_mean_radius(const struct scene *scene);
 /* Appends the discs of particles.fill to the listed ones, drawing the displacements from GSL's generator mt19937 with
  * the case's seed: row by row from the lower left, x before y. */
 bool scene_fill(struct scene *scene, struct status *status);
+
+/* Density of a disc less that of the fluid which it displaces. */
+static inline double scene_buoyant_density(const struct scene *scene, const struct disc_spec *disc)
+{
+  return scene->fluid.none ? disc->density : disc->density - 1;
+}
 
 /* Relaxation rate of the stress for a kinematic viscosity. */
 static inline double rate_from_viscosity(double viscosity)

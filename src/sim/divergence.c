@@ -107,11 +107,12 @@ static bool explain_start(const struct divergence *of, struct status *status)
 /* Speed reached by a force within the steps done; the advised value of the key is for the whole run. */
 static bool explain_speed(const struct divergence *of, const struct estimate *so_far, struct status *status)
 {
-  if (so_far->speed <= scene_advised_speed) return false;
+  if (so_far->speed <= estimate_advised_speed(of->scene)) return false;
   const int64_t steps = of->scene->run.steps > of->step ? of->scene->run.steps : of->step;
   const struct estimate fastest = estimate_fastest(of->scene, steps);
-  status_add(status, "; %s leads to speeds of about %.2g cells/step (Mach %.2g); better: %s <= %.2g %s", fastest.key,
-             fastest.speed, fastest.speed * sqrt(3), fastest.key, fastest.advised, fastest.unit);
+  status_add(status, "; %s leads to speeds of about %.2g cells/step", fastest.key, fastest.speed);
+  if (!of->scene->fluid.none) status_add(status, " (Mach %.2g)", fastest.speed * sqrt(3));
+  status_add(status, "; better: %s <= %.2g %s", fastest.key, fastest.advised, fastest.unit);
   return true;
 }
 
@@ -191,6 +192,10 @@ static bool explain_excess(const struct divergence *of, struct status *status)
 void divergence_explain(const struct divergence *of, struct status *status)
 {
   const struct estimate fastest = estimate_fastest(of->scene, of->step);
+  if (of->scene->fluid.none) {
+    explain_speed(of, &fastest, status);
+    return;
+  }
   if (explain_dam(of, status) || explain_solve(of, status) || explain_load(of, status)) return;
   const bool fast = explain_start(of, status) || explain_speed(of, &fastest, status);
   const bool coarse = explain_cells(of, &fastest, status) || explain_viscosity(of, status);

@@ -59,6 +59,25 @@ double estimate_forced(const struct scene *scene, int axis, int64_t steps)
   return speed;
 }
 
+double estimate_advised_speed(const struct scene *scene)
+{
+  return scene->fluid.none ? scene_max_speed : scene_advised_speed;
+}
+
+double estimate_fall(const struct scene *scene, const struct disc_spec *disc, int64_t steps, double factor)
+{
+  double speed[2];
+  for (int axis = 0; axis < 2; axis++) {
+    const double start = fabs(disc->velocity[axis]), g = factor * fabs(scene->particles.gravity[axis]);
+    const bool up = scene->particles.gravity[axis] > 0;
+    const enum side_name below = axis == 0 ? (up ? SIDE_RIGHT : SIDE_LEFT) : up ? SIDE_TOP : SIDE_BOTTOM;
+    const double height = fmax(0, scene_distance_to_side(scene, below, disc->position) - disc->radius);
+    speed[axis] = start + g * (double)steps;
+    if (!scene_is_periodic(scene, axis)) speed[axis] = fmin(speed[axis], sqrt(start * start + 2 * g * height));
+  }
+  return hypot(speed[0], speed[1]);
+}
+
 static void consider(struct estimate *fastest, const struct estimate *other)
 {
   if (other->speed > fastest->speed) *fastest = *other;
@@ -79,7 +98,7 @@ static void consider_disc(struct estimate *fastest, const struct scene *scene, s
 {
   const struct disc_spec *disc = &scene->particles.discs[i];
   const double along = hypot(disc->velocity[0], disc->velocity[1]), rim = fabs(disc->spin) * disc->radius;
-  const double advised = scene_advised_speed;
+  const double advised = estimate_advised_speed(scene);
   struct estimate own = {.speed = along + rim, .from = "the discs", .advised = advised, .unit = "cells/step"};
   snprintf(own.key, sizeof own.key, "particles.discs.%zu.velocity", i);
   if (rim > along) {
@@ -103,6 +122,25 @@ static void consider_weight(struct estimate *fastest, const struct scene *scene,
       .advised = cylinder_drag(disc->radius, viscosity, scene_advised_speed) / buoyant,
       .unit = "cells/step^2",
   };
+  consider(fastest, &own);
+}
+
+static void consider_fall(struct estimate *fastest, const struct scene *scene, const struct disc_spec *disc,
+                          int64_t steps)
+{
+  const double *gravity = scene->particles.gravity, advised = estimate_advised_speed(scene);
+  if (disc->motion != DISC_FREE) return;
+  struct estimate own = {.speed = estimate_fall(scene, disc, steps, 1),
+                         .from = "the discs",
+                         .key = "particles.gravity",
+                         .unit = "cells/step^2"};
+  if (own.speed <= fastest->speed) return;
+  double low = 0, high = 1;
+  for (int k = 0; k < 60; k++) {
+    const double middle = (low + high) / 2;
+    *(estimate_fall(scene, disc, steps, middle) < advised ? &low : &high) = middle;
+  }
+  own.advised = low * hypot(gravity[0], gravity[1]);
   consider(fastest, &own);
 }
 
@@ -132,11 +170,14 @@ struct estimate estimate_fastest(const struct scene *scene, int64_t steps)
   for (size_t i = 0; i < scene->particles.count; i++) {
     const struct disc_spec *disc = &scene->particles.discs[i];
     consider_disc(&fastest, scene, i);
-    if (!before || disc->radius != before->radius || disc->density != before->density || disc->motion != before->motion)
+    if (scene->fluid.none)
+      consider_fall(&fastest, scene, disc, steps);
+    else if (!before || disc->radius != before->radius || disc->density != before->density ||
+             disc->motion != before->motion)
       consider_weight(&fastest, scene, disc);
     before = disc;
   }
-  for (int axis = 0; axis < 2; axis++) consider_force(&fastest, scene, axis, steps);
+  for (int axis = 0; axis < 2 && !scene->fluid.none; axis++) consider_force(&fastest, scene, axis, steps);
   return fastest;
 }
 
@@ -146,7 +187,7 @@ void estimate_weight(const struct scene *scene, double weight[2])
   for (size_t i = 0; i < scene->particles.count; i++) {
     const struct disc_spec *disc = &scene->particles.discs[i];
     if (disc->motion != DISC_FREE) continue;
-    const double mass = disc_spec_area(disc) * (disc->density - 1);
+    const double mass = disc_spec_area(disc) * scene_buoyant_density(scene, disc);
     for (int axis = 0; axis < 2; axis++) weight[axis] += mass * scene->particles.gravity[axis];
   }
 }

@@ -20,18 +20,25 @@ struct estimate {
   double speed;           /* cells/step; 0: the case has none */
   const char *from;       /* "the sides", "the discs", "the force" */
   char key[ESTIMATE_KEY]; /* key to change: "fluid.force" */
-  double advised;         /* value of the key (of a pair: its length) at which the speed is scene_advised_speed */
+  double advised;         /* value of the key (of a pair: its length) at which the speed is estimate_advised_speed */
   const char *unit;       /* of `advised` */
 };
 
+/* Speed to stay below: scene_advised_speed; without fluid scene_max_speed, since only contacts limit it. */
+double estimate_advised_speed(const struct scene *scene);
+
 /* The largest speed within `steps` steps of: sides, discs at the start, settling discs, fluid driven by a body
- * force. */
+ * force; without fluid: discs at the start, falling discs. */
 struct estimate estimate_fastest(const struct scene *scene, int64_t steps);
 
 /* Terminal speed of a single disc in unbounded fluid, from its weight and the drag of a cylinder: C_D = 8 pi/(Re
  * ln(7.4/Re)) (Lamb) at small Re, and the fit 1 + 10 Re^(-2/3) of measured drag beyond Re = 1. Within a factor of
  * two. */
 double estimate_settling(double radius, double viscosity, double weight);
+
+/* Speed of a free disc without fluid that falls from its initial position and velocity, for `steps` steps or until it
+ * reaches a side, at `factor` times the gravity of the scene. */
+double estimate_fall(const struct scene *scene, const struct disc_spec *disc, int64_t steps, double factor);
 
 /* Speed of the fluid driven by fluid.force along a periodic axis within `steps` steps, 0 along another axis: at most
  * g t; between walls H apart at most g H^2/(8 viscosity), the largest of plane Poiseuille flow; past fixed discs at

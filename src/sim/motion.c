@@ -3,6 +3,7 @@
 #include "sim/diagnostics.h"
 
 #include <math.h>
+#include <stdio.h>
 
 static double into_box(const struct scene *scene, int axis, double at)
 {
@@ -19,7 +20,8 @@ static void move_disc(const struct contacts *c, struct exchange *e, struct discs
   d->angle[i] += d->omega[i];
   if (d->motion[i] == DISC_FIXED) return;
   double to[2] = {d->x[i] + d->vx[i], d->y[i] + d->vy[i]};
-  contacts_moved(c, i, to);
+  const bool by_substeps = contacts_moved(c, i, to);
+  if (e->lag) exchange_change_lag(e, d, i, by_substeps ? 1.0 / c->substeps : 1, to);
   d->x[i] = into_box(c->scene, 0, to[0]);
   d->y[i] = into_box(c->scene, 1, to[1]);
 }
@@ -38,14 +40,25 @@ static bool has_left(const struct scene *scene, const struct discs *d, size_t i)
   return d->motion[i] == DISC_FREE && !inside;
 }
 
+/* Reports the speed of disc i. */
+static bool fail_too_fast(const struct scene *scene, const struct discs *d, size_t i, int64_t step,
+                          const double from[2], struct status *status)
+{
+  char limit[64];
+  if (scene->fluid.none)
+    snprintf(limit, sizeof limit, "%.3g cells/step, beyond which contacts may be missed", diagnostics_speed_limit);
+  else
+    snprintf(limit, sizeof limit, "Mach 0.6");
+  return status_fail(status, DELBM_FAILED,
+                     "diverged at step %lld: disc %zu near (%.1f, %.1f) moves at (%g, %g), spin %g: above %s",
+                     (long long)step, i, from[0], from[1], d->vx[i], d->vy[i], d->omega[i], limit);
+}
+
 /* Fails if disc i, previously at `from`, is too fast or outside of the box. */
 static bool check_disc(const struct scene *scene, const struct discs *d, size_t i, int64_t step, const double from[2],
                        struct status *status)
 {
-  if (too_fast(d, i))
-    return status_fail(status, DELBM_FAILED,
-                       "diverged at step %lld: disc %zu near (%.1f, %.1f) moves at (%g, %g), spin %g: above Mach 0.6",
-                       (long long)step, i, from[0], from[1], d->vx[i], d->vy[i], d->omega[i]);
+  if (too_fast(d, i)) return fail_too_fast(scene, d, i, step, from, status);
   if (has_left(scene, d, i))
     return status_fail(
         status, DELBM_FAILED,

@@ -17,6 +17,9 @@
  * block advances first the rows that no disc can reach within its steps, then the disc rows step by step. A failure
  * within such a block leaves rows at different steps: block_incomplete then excludes sums over all rows.
  *
+ * Without fluid stages 2 and stage_motion are the step: no populations, no occupation, no sums, no blocking. The
+ * response of the discs is constant (exchange.c).
+ *
  * State. The state of a checkpoint is the fluid, the discs, and what exchange and contacts store between steps;
  * occupation and sums are derived from the state (derive_state). Failure in a thread: team.h. */
 #include "sim/simulation.h"
@@ -53,10 +56,16 @@ struct simulation {
   bool block_incomplete; /* rows are at different steps after a failure within a block */
 };
 
+/* Zero without fluid. */
+static struct fluid_totals fluid_totals(const struct simulation *s)
+{
+  return s->stages.fluid ? diagnostics_totals(&s->flow.populations) : (struct fluid_totals){0};
+}
+
 /* Momentum of fluid and discs that the coupling conserves (exchange.h). */
 static void conserved_momentum(struct simulation *s, double momentum[2])
 {
-  const struct fluid_totals fluid = diagnostics_totals(&s->flow.populations);
+  const struct fluid_totals fluid = fluid_totals(s);
   momentum[0] = fluid.jx;
   momentum[1] = fluid.jy;
   for (size_t i = 0; i < s->discs.count; i++) exchange_add_momentum(&s->exchange, &s->discs, i, momentum);
@@ -69,11 +78,12 @@ static struct occupation *present(struct simulation *s)
 
 static bool create_discs(struct simulation *s, struct status *status)
 {
-  if (!s->stages.exchange) return true;
+  if (!s->stages.discs) return true;
+  const bool painted = s->stages.occupation != OCCUPATION_NEVER;
   const bool moving = s->stages.occupation == OCCUPATION_EVERY_STEP;
   const struct contact_needs needs = {s->stages.pairs, s->stages.walls, s->stages.substeps};
   return discs_create(&s->discs, s->scene, status) &&
-         occupation_create(&s->occupations[0], s->scene, &s->discs, status) &&
+         (!painted || occupation_create(&s->occupations[0], s->scene, &s->discs, status)) &&
          (!moving || occupation_create(&s->occupations[1], s->scene, &s->discs, status)) &&
          exchange_create(&s->exchange, s->scene, &s->discs, status) &&
          contacts_create(&s->contacts, s->scene, needs, &s->discs, status);
@@ -110,10 +120,21 @@ static struct sweep_discs discs_between_steps(struct simulation *s)
 
 void simulation_start(struct simulation *s, flow_initial *initial, const void *context)
 {
-  const struct sweep_discs discs = discs_between_steps(s);
-  flow_start(&s->flow, initial, context, &discs);
-  take_first_sums(s);
+  if (s->stages.fluid) {
+    const struct sweep_discs discs = discs_between_steps(s);
+    flow_start(&s->flow, initial, context, &discs);
+    take_first_sums(s);
+  }
   conserved_momentum(s, s->initial_momentum);
+}
+
+static bool create_fluid(struct simulation *s, struct status *status)
+{
+  if (!s->stages.fluid) return true;
+  if (!flow_create(&s->flow, s->scene, &s->stages, status)) return false;
+  flow_load(&s->flow, &s->exchange, s->stages.exchange ? &s->discs : NULL);
+  flow_balance(&s->flow);
+  return true;
 }
 
 /* Populations are created last: they are mapped but not written, and the budget (memory.h) counts only resident
@@ -124,11 +145,7 @@ static struct simulation *create(const struct scene *scene, struct status *statu
   if (!s) return NULL;
   s->scene = scene;
   s->stages = stages_of(scene);
-  if (create_discs(s, status) && paint(s, status) && flow_create(&s->flow, scene, &s->stages, status)) {
-    flow_load(&s->flow, &s->exchange, s->stages.exchange ? &s->discs : NULL);
-    flow_balance(&s->flow);
-    return s;
-  }
+  if (create_discs(s, status) && paint(s, status) && create_fluid(s, status)) return s;
   simulation_destroy(s);
   return NULL;
 }
@@ -179,11 +196,12 @@ static bool discs_stay_within(struct simulation *s, const struct occupation *nex
   return !s->discs_left_rows;
 }
 
-/* Stages 1 to 3 of a step, by all threads of the parallel region. False in all threads after a failure in one. */
+/* Stages 1 to 3 of a step, by all threads of the parallel region. False in all threads after a failure in one. `next`:
+ * NULL without fluid. */
 static bool step_discs(struct simulation *s, struct occupation *next, double *since)
 {
-  struct occupation *now = present(s);
-  if (!stage_exchange(&s->exchange, &s->flow.constants, now, &s->discs, s->step, &s->team)) return false;
+  struct occupation *now = s->stages.fluid ? present(s) : NULL;
+  if (now && !stage_exchange(&s->exchange, &s->flow.constants, now, &s->discs, s->step, &s->team)) return false;
   add_time(s, STAGE_EXCHANGE, since);
   if (!stage_contact(&s->contacts, now, &s->exchange, &s->discs, &s->team)) return false;
   add_time(s, STAGE_CONTACT, since);
@@ -194,9 +212,10 @@ static bool step_discs(struct simulation *s, struct occupation *next, double *si
   return true;
 }
 
-/* Occupation at the next step: the present one where no disc moves. */
+/* Occupation at the next step: the present one where no disc moves; NULL without fluid. */
 static struct occupation *next_occupation(struct simulation *s)
 {
+  if (!s->stages.fluid) return NULL;
   return s->stages.occupation == OCCUPATION_EVERY_STEP ? &s->occupations[!s->present] : present(s);
 }
 
@@ -204,6 +223,7 @@ static struct occupation *next_occupation(struct simulation *s)
 static bool step(struct simulation *s, const struct rows *rows, double *since)
 {
   struct sweep_discs discs = {0};
+  if (!s->stages.fluid) return step_discs(s, NULL, since);
   if (s->stages.exchange) {
     struct occupation *next = next_occupation(s);
     if (!step_discs(s, next, since) || !discs_stay_within(s, next, rows)) return false;
@@ -224,8 +244,8 @@ bool simulation_measure(const struct scene *scene, struct simulation_memory *mem
   struct simulation *s = create(scene, status);
   if (!s) return false;
   take_first_sums(s);
-  if (s->stages.exchange) {
-#pragma omp parallel num_threads(threads_for(scene_cells(scene)))
+  if (s->stages.discs) {
+#pragma omp parallel num_threads(stages_threads(scene))
     step_discs(s, next_occupation(s), &(double){clock_now()});
   }
   const double populations = (double)s->flow.populations.bytes;
@@ -334,7 +354,7 @@ static void explain(struct simulation *s, int x, int y, struct status *status)
 {
   struct divergence divergence = {
       .scene = s->scene, .discs = &s->discs, .step = s->step, .excess = NAN, .cell = {x, y}};
-  if (!s->block_incomplete) {
+  if (!s->block_incomplete && s->stages.fluid) {
     divergence.excess = congestion(s);
     s->max_mach = fmax(s->max_mach, sqrt(3) * diagnostics_largest_speed(&s->flow.populations));
   }
@@ -350,6 +370,7 @@ bool simulation_usable(const struct simulation *s, struct status *status)
 bool simulation_check(struct simulation *s, struct status *status)
 {
   if (!simulation_usable(s, status)) return false;
+  if (!s->stages.fluid) return true; /* discs are checked each step */
   const struct worst_cell worst = diagnostics_worst(&s->flow.populations, s->flow.kernel->scan);
   const double speed = sqrt(worst.speed2), mach = speed * sqrt(3), max_congestion = 0.5;
   const long long step = (long long)s->step;
@@ -382,11 +403,11 @@ static bool advance_to_check(struct simulation *s, int64_t steps, struct status 
 bool simulation_advance(struct simulation *s, int64_t steps, struct status *status)
 {
   if (!simulation_usable(s, status)) return false;
-  if (s->threads != threads_for(scene_cells(s->scene))) {
-    s->threads = threads_for(scene_cells(s->scene));
+  if (s->threads != stages_threads(s->scene)) {
+    s->threads = stages_threads(s->scene);
     tuning_start(&s->tuning, s->scene, s->threads);
   }
-  if (!flow_prepare(&s->flow, s->threads, status)) return false;
+  if (s->stages.fluid && !flow_prepare(&s->flow, s->threads, status)) return false;
   const int64_t end = s->step + steps, check = s->scene->run.check;
   while (s->step < end) {
     const int64_t until_check = check - s->step % check;
@@ -401,8 +422,9 @@ static bool store_state(struct simulation *s, struct store *store, struct status
 {
   return store_mark(store, "simulation", status) && store_bytes(store, &s->step, sizeof s->step, status) &&
          store_bytes(store, s->initial_momentum, sizeof s->initial_momentum, status) &&
-         store_bytes(store, &s->max_mach, sizeof s->max_mach, status) && flow_store(&s->flow, s->step, store, status) &&
-         (!s->stages.exchange ||
+         store_bytes(store, &s->max_mach, sizeof s->max_mach, status) &&
+         (!s->stages.fluid || flow_store(&s->flow, s->step, store, status)) &&
+         (!s->stages.discs ||
           (discs_store(&s->discs, store, status) && exchange_store(&s->exchange, s->discs.count, store, status) &&
            contacts_store(&s->contacts, s->discs.count, store, status))) &&
          store_bytes(store, &s->times, sizeof s->times, status); /* last, since times differ between runs */
@@ -458,7 +480,7 @@ bool simulation_unchanged(struct simulation *s)
 bool simulation_restore(struct simulation *s, struct store *store, struct status *status)
 {
   if (!store_state(s, store, status) || !check_places(s, store, status)) return false;
-  boundary_refill(&s->flow.boundary, &s->flow.populations);
+  if (s->stages.fluid) boundary_refill(&s->flow.boundary, &s->flow.populations);
   return derive_state(s, status);
 }
 
@@ -470,7 +492,7 @@ void simulation_set_fluid(struct simulation *s, const double *density, const dou
 
 const char *simulation_kernel(const struct simulation *s)
 {
-  return s->flow.kernel->name;
+  return s->stages.fluid ? s->flow.kernel->name : "none";
 }
 
 int64_t simulation_step(const struct simulation *s)
@@ -514,34 +536,41 @@ static double momentum_drift(struct simulation *s)
   const bool closed_system = scene_is_periodic(s->scene, 0) && scene_is_periodic(s->scene, 1) &&
                              s->discs.free == s->discs.count && s->scene->coupling.solve == SOLVE_IMPLICIT;
   if (!closed_system) return NAN;
-  const double cells = (double)s->scene->domain.size[0] * s->scene->domain.size[1];
+  const double cells = s->stages.fluid ? (double)scene_cells(s->scene) : 0;
   double buoyant_mass = 0, momentum[2], largest = 0;
   for (size_t i = 0; i < s->discs.count; i++) buoyant_mass += s->discs.mass[i] - s->discs.fluid_mass[i];
+  const double mass = s->stages.fluid ? cells : buoyant_mass;
   conserved_momentum(s, momentum);
   for (int axis = 0; axis < 2; axis++) {
     const double applied = cells * s->scene->fluid.force[axis] + buoyant_mass * s->scene->particles.gravity[axis];
     const double unexplained = momentum[axis] - s->initial_momentum[axis] - (double)s->step * applied;
-    largest = fmax(largest, fabs(unexplained) / cells);
+    largest = fmax(largest, fabs(unexplained) / mass);
   }
   return largest;
 }
 
-void simulation_report(struct simulation *s, struct simulation_report *report)
+/* Mass and mean velocity of the fluid. */
+static void report_fluid(const struct simulation *s, struct simulation_report *report)
 {
-  const double cells = (double)s->scene->domain.size[0] * s->scene->domain.size[1];
-  const struct fluid_totals totals = diagnostics_totals(&s->flow.populations);
+  const double cells = (double)scene_cells(s->scene);
+  const struct fluid_totals totals = fluid_totals(s);
   const struct fluid_force force = flow_force(&s->flow);
   const double mass = s->block_incomplete ? NAN : cells + totals.excess_mass, momentum[2] = {totals.jx, totals.jy};
-  *report = (struct simulation_report){.threads = threads_for(scene_cells(s->scene)),
-                                       .kernel = s->flow.kernel->name,
-                                       .times = s->times,
-                                       .mass_drift = s->block_incomplete ? NAN : fabs(totals.excess_mass) / cells,
-                                       .momentum_drift = momentum_drift(s),
-                                       .max_mach = s->max_mach,
-                                       .max_substeps = s->stages.exchange ? s->contacts.max_substeps : 1};
+  report->mass_drift = s->block_incomplete ? NAN : fabs(totals.excess_mass) / cells;
   for (int axis = 0; axis < 2; axis++) /* with half the force of the coming step, as in simulation_fields */
     report->mean_velocity[axis] =
         (momentum[axis] + (mass * force.per_mass[axis] + cells * force.uniform[axis]) / 2) / mass;
+}
+
+void simulation_report(struct simulation *s, struct simulation_report *report)
+{
+  *report = (struct simulation_report){.threads = stages_threads(s->scene),
+                                       .kernel = simulation_kernel(s),
+                                       .times = s->times,
+                                       .momentum_drift = momentum_drift(s),
+                                       .max_mach = s->max_mach,
+                                       .max_substeps = s->stages.discs ? s->contacts.max_substeps : 1};
+  if (s->stages.fluid) report_fluid(s, report);
   tuning_text(&s->tuning, report->blocking);
   threads_binding(report->binding);
 }

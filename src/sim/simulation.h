@@ -16,19 +16,20 @@
 struct occupation;
 struct simulation;
 
-/* Creates fluid at rest (density 1) and the discs of the scene. The scene must outlive the simulation. */
+/* Creates fluid at rest (density 1), unless fluid.none, and the discs of the scene. The scene must outlive the
+ * simulation. */
 bool simulation_create(struct simulation **simulation, const struct scene *scene, struct status *status);
 void simulation_destroy(struct simulation *simulation);
 
 /* Memory of a simulation of the scene, bytes. Measured: all tables are created, and the discs take one step in fluid at
  * rest whose pages are mapped but not written, hence not resident. Costs one step without its sweep. */
 struct simulation_memory {
-  double populations;
-  double tables; /* all other arrays; growing lists count twice, as old and new copies exist at the peak */
+  double populations; /* 0 without fluid */
+  double tables;      /* all other arrays; growing lists count twice, as old and new copies exist at the peak */
 };
 bool simulation_measure(const struct scene *scene, struct simulation_memory *memory, struct status *status);
 
-/* Replaces the initial state of the fluid. To be called before the first step. */
+/* Replaces the initial state of the fluid, of which there must be some. To be called before the first step. */
 void simulation_start(struct simulation *simulation, flow_initial *initial, const void *context);
 
 /* Advances by `steps` steps. Fails (DELBM_FAILED) when the run has diverged: a value that is not finite, or a Mach
@@ -47,14 +48,14 @@ bool simulation_check(struct simulation *simulation, struct status *status);
 bool simulation_save(struct simulation *simulation, struct store *store, struct status *status);
 bool simulation_restore(struct simulation *simulation, struct store *store, struct status *status);
 
-/* Name of the sweep kernel, chosen by the processor and the scene; results of two kernels may differ in the last bit. */
+/* Name of the sweep kernel, or "none", chosen by the processor and the scene; results of two kernels may differ in the last bit. */
 const char *simulation_kernel(const struct simulation *simulation);
 
 int64_t simulation_step(const struct simulation *simulation);
 const struct scene *simulation_scene(const struct simulation *simulation);
 const struct discs *simulation_discs(const struct simulation *simulation);
 
-/* Changes by the caller between steps: to the arrays of the discs directly, and to the fluid by simulation_set_fluid,
+/* Changes by the caller between steps: to the arrays of the discs directly, and to the fluid, if there is any, by simulation_set_fluid,
  * which sets all cells to the equilibrium of a density and velocity (arrays as in simulation_fields). After the last
  * change and before the next step, simulation_changed updates all derived state. It fails if memory runs out, or if
  * the simulation has failed before. */
@@ -65,13 +66,14 @@ bool simulation_changed(struct simulation *simulation, struct status *status);
  * memory runs out again: the simulation can then only be destroyed. */
 bool simulation_unchanged(struct simulation *simulation);
 
-/* Occupation at the present step; NULL in a scene without discs. */
+/* Occupation at the present step; NULL in a scene without discs or without fluid. */
 const struct occupation *simulation_occupation(const struct simulation *simulation);
 
-/* Density and velocity of every cell, row by row from the bottom: arrays of size[0] * size[1]. Any may be NULL. */
+/* In a scene with fluid: density and velocity of every cell, row by row from the bottom: arrays of size[0] * size[1].
+ * Any may be NULL. */
 void simulation_fields(struct simulation *simulation, double *density, double *ux, double *uy);
 
-/* Samples on part of the cells (sample.h). */
+/* In a scene with fluid: samples on part of the cells (sample.h). */
 bool simulation_sample(struct simulation *simulation, const struct sample_grid *grid, const struct sample *sample,
                        struct status *status);
 
@@ -80,13 +82,14 @@ struct simulation_report {
   int threads;
   const char *kernel;
   struct stage_times times; /* STAGE_OUTPUT: 0, measured by the caller */
-  double mass_drift;        /* |mass - initial mass| / initial mass */
+  double mass_drift;        /* |mass - initial mass| / initial mass, of the fluid; 0 without fluid */
   double
-      momentum_drift; /* change of the conserved momentum less the impulse of body forces, over the mass of the fluid;
-                               larger component; NAN where sides, or discs that are not free, exchange momentum */
-  double mean_velocity[2];    /* momentum of the fluid over its mass, cells inside discs included, cells/step */
-  double max_mach;            /* largest at the checks for divergence, and at a divergence */
-  char blocking[32];          /* blocking of the sweep in time: off, its depth, or depth x width */
+      momentum_drift; /* change of the conserved momentum less the impulse of body forces, over the mass of the fluid,
+                               without fluid of the discs; larger component; NAN where sides, or discs that are not free, exchange momentum */
+  double mean_velocity
+      [2];           /* momentum of the fluid over its mass, cells inside discs included, cells/step; 0 without fluid */
+  double max_mach;   /* largest at the checks for divergence, and at a divergence */
+  char blocking[32]; /* blocking of the sweep in time: off, its depth, or depth x width */
   char binding[THREADS_TEXT]; /* of threads to processors */
   int max_substeps;           /* largest number of contact sub-steps of a step so far */
 };

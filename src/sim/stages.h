@@ -20,7 +20,9 @@ enum occupation_need { OCCUPATION_NEVER, OCCUPATION_ONCE, OCCUPATION_EVERY_STEP 
 
 struct stages {
   enum occupation_need occupation;
-  bool exchange; /* there are discs */
+  bool fluid;    /* there is fluid: the sweep */
+  bool discs;    /* there are discs */
+  bool exchange; /* there are both */
   bool pairs;    /* contacts of discs are possible: two discs or more, one of them free */
   bool walls;    /* contacts with sides are possible: a free disc and a side that is not periodic */
   bool substeps; /* stiffness may require several contact sub-steps */
@@ -28,5 +30,8 @@ struct stages {
 };
 
 struct stages stages_of(const struct scene *scene);
+
+/* Threads of the parallel region of a step. */
+int stages_threads(const struct scene *scene);
 
 #endif

@@ -22,6 +22,7 @@ static void skip_impossible(struct tuning *t)
 void tuning_start(struct tuning *t, const struct scene *scene, int threads)
 {
   *t = (struct tuning){.best = {.depth = 1}, .decided = true, .best_time = INFINITY};
+  if (scene->fluid.none) return;
   const int interval = zero_flux_create(scene).interval;
   if (scene->particles.count > 0) { /* no trials: the free rows change with the discs */
     t->best.depth = scene->run.plan.depth > 0 ? scene->run.plan.depth : BLOCKED_DEPTH;

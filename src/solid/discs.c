@@ -38,6 +38,12 @@ static void set_disc(struct discs *d, size_t i, const struct shape_kind *kind, c
   d->free += spec->motion == DISC_FREE;
 }
 
+/* Without fluid. */
+static void displace_nothing(struct discs *d)
+{
+  for (size_t i = 0; i < d->count; i++) d->fluid_mass[i] = d->fluid_inertia[i] = 0;
+}
+
 bool discs_create(struct discs *discs, const struct scene *scene, struct status *status)
 {
   const size_t count = scene->particles.count;
@@ -53,6 +59,7 @@ bool discs_create(struct discs *discs, const struct scene *scene, struct status 
   }
   carve(discs, discs->block, stride);
   for (size_t i = 0; i < count; i++) set_disc(discs, i, &kernel->disc, &scene->particles.discs[i]);
+  if (scene->fluid.none) displace_nothing(discs);
   return true;
 }
 

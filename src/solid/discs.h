@@ -1,5 +1,5 @@
 /* The discs: one array per quantity, indexed by disc. Lattice units; angles counter-clockwise. The reference density of
- * the fluid is 1, so that fluid_mass = pi R^2 is the mass of the fluid that would fill the disc. */
+ * the fluid is 1, so that fluid_mass = pi R^2 is the mass of the fluid that would fill the disc; 0 without fluid. */
 #ifndef DELBM_SOLID_DISCS_H
 #define DELBM_SOLID_DISCS_H
 
