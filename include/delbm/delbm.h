@@ -54,7 +54,7 @@ struct delbm_simulation;
 /* "0.1.0", of the library in use. */
 DELBM_API const char *delbm_version(void);
 
-/* Opens a simulation at step 0: fluid at rest, discs as in the case. *simulation is NULL on failure: DELBM_IO for a
+/* Opens a simulation at step 0: fluid at rest, or none with `fluid: none`, discs as in the case. *simulation is NULL on failure: DELBM_IO for a
  * file that cannot be read, DELBM_INVALID for an invalid or too large case, DELBM_USAGE for a setting that is not
  * key=value, DELBM_FAILED for want of memory.
  *
@@ -81,7 +81,8 @@ DELBM_API int64_t delbm_time(const struct delbm_simulation *simulation);
 /* Cells in x (axis 0) or y (axis 1). */
 DELBM_API int delbm_size(const struct delbm_simulation *simulation, int axis);
 
-/* State of a disc. Forces act in the last step: `force` and `torque` from the fluid, the contact forces from discs
+/* State of a disc. With `fluid: none` a velocity is that of half a contact sub-step before the position (without
+ * contact: half a step), at step 0 that of the position. Forces act in the last step: `force` and `torque` from the fluid, the contact forces from discs
  * and walls. */
 struct delbm_disc_state {
   double position[2], velocity[2];
@@ -126,12 +127,13 @@ enum delbm_field {
 
 /* Copies a field into an array of nx * ny numbers, nx = delbm_size(.., 0), ny = delbm_size(.., 1), row by row from
  * the bottom: cell (i, j) is values[j * nx + i], as in a NumPy array of shape (ny, nx). DELBM_FAILED for want of
- * memory. */
+ * memory; DELBM_USAGE in a case with `fluid: none`, which has no fields. */
 DELBM_API enum delbm_code delbm_read_field(struct delbm_simulation *simulation, enum delbm_field field, double *values,
                                            struct delbm_status *status);
 
 /* Sets the fluid of every cell to equilibrium at this density and velocity (cells/step), arrays in the order of
- * delbm_read_field. Densities must be above 0, speeds at most 0.3: otherwise DELBM_USAGE. The viscous stress
+ * delbm_read_field. Densities must be above 0, speeds at most 0.3, and there must be fluid: otherwise DELBM_USAGE. The
+ * viscous stress
  * develops in the first few steps. In a cell of discs the velocity is (1 - B) times `velocity` plus B times the
  * discs' velocity, with B the weight of the occupation fraction, 1 or nearly 1 inside a disc: the fluid there moves
  * with the disc. */

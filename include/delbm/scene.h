@@ -1,7 +1,7 @@
 /* A scene described in code, in place of a case file. Lattice units: lengths in cells, time in steps, the density of
  * the fluid at rest is 1. All zero is the default of everything but size and viscosity. A scene is checked like a
  * case file; other settings (contacts, coupling, precision) are made by the keys of case files (`settings` in
- * delbm.h). */
+ * delbm.h). The setting "fluid=none" makes a scene of dry discs, without viscosity and force. */
 #ifndef DELBM_SCENE_H
 #define DELBM_SCENE_H
 

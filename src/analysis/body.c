@@ -52,6 +52,7 @@ static bool has_stream(const struct scene *scene)
 
 bool body_applies(const struct scene *scene)
 {
+  if (scene->fluid.none) return false;
   if (all_held_alike(scene)) return has_stream(scene);
   const double *gravity = scene->particles.gravity;
   return scene->particles.count == 1 && (gravity[0] == 0) != (gravity[1] == 0) &&

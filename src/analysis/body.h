@@ -50,7 +50,7 @@ struct body {
   double growth; /* of the swing: standard deviation in the last third of the series over the first third */
 };
 
-/* True for a scene with one free disc under gravity along an axis; and for a scene of fixed or driven discs of one
+/* True for a scene with fluid and one free disc under gravity along an axis; and for a scene of fixed or driven discs of one
  * velocity where an inlet, a force, a wall or the discs themselves cause a relative motion of fluid and discs. */
 bool body_applies(const struct scene *scene);
 

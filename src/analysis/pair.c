@@ -10,7 +10,7 @@ struct work {
 
 bool pair_applies(const struct scene *scene)
 {
-  if (scene->particles.count != 2 || !(scene->particles.gravity[1] < 0)) return false;
+  if (scene->fluid.none || scene->particles.count != 2 || !(scene->particles.gravity[1] < 0)) return false;
   const struct disc_spec *disc = scene->particles.discs;
   return disc[0].motion == DISC_FREE && disc[1].motion == DISC_FREE && disc[0].position[1] != disc[1].position[1];
 }

@@ -21,7 +21,7 @@ struct pair {
   double wall_time, wall_distance;   /* leading's centre nearest to a side wall after it was thrown, cells */
 };
 
-/* True for two free discs, one higher than the other, under gravity along -y. */
+/* True for two free discs in fluid, one higher than the other, under gravity along -y. */
 bool pair_applies(const struct scene *scene);
 struct pair pair_analyse(const struct scene *scene, const struct history *history);
 

@@ -3,6 +3,11 @@
 
 #include <math.h>
 
+static bool has_fluid(const struct delbm_simulation *s, struct status *status)
+{
+  return !s->scene.fluid.none || status_fail(status, DELBM_USAGE, "no fields: the case has fluid: none");
+}
+
 static bool read_occupation(const struct delbm_simulation *s, double *values, struct status *status)
 {
   const int *size = s->scene.domain.size;
@@ -32,7 +37,8 @@ enum delbm_code delbm_read_field(struct delbm_simulation *s, enum delbm_field fi
                                  struct delbm_status *out)
 {
   struct api_call call;
-  const bool good = api_enter(&call, s, out) && read_field(s, field, values, &call.status);
+  const bool good =
+      api_enter(&call, s, out) && has_fluid(s, &call.status) && read_field(s, field, values, &call.status);
   return api_leave(&call, good);
 }
 
@@ -61,6 +67,7 @@ enum delbm_code delbm_write_fluid(struct delbm_simulation *s, const double *dens
                                   const double *velocity_y, struct delbm_status *out)
 {
   struct api_call call;
-  const bool good = api_enter(&call, s, out) && write_fluid(s, density, velocity_x, velocity_y, &call.status);
+  const bool good = api_enter(&call, s, out) && has_fluid(s, &call.status) &&
+                    write_fluid(s, density, velocity_x, velocity_y, &call.status);
   return api_leave(&call, good);
 }

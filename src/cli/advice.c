@@ -149,6 +149,11 @@ static void advise_fall(const struct scene *scene, const double weight[2])
 void print_advice(const struct scene *scene)
 {
   double weight[2];
+  if (scene->fluid.none) {
+    advise_substeps(scene);
+    advise_rest(scene);
+    return;
+  }
   advise_rates(scene);
   if (scene->particles.count == 0) return;
   advise_solve(scene);

@@ -27,7 +27,7 @@ struct sediment {
 
 static double buoyant_weight(const struct scene *scene, const struct disc_spec *disc, int axis)
 {
-  return disc_spec_area(disc) * (disc->density - 1) * scene->particles.gravity[axis];
+  return disc_spec_area(disc) * scene_buoyant_density(scene, disc) * scene->particles.gravity[axis];
 }
 
 static bool is_drawn(const struct scene *scene, const struct sediment *s, const struct disc_spec *disc)
@@ -74,9 +74,11 @@ static double layers(const struct scene *scene, const struct sediment *s)
 static bool comes_to_rest(const struct scene *scene, const struct sediment *s)
 {
   const double spare = 1.5, count = (double)s->count, fraction = s->area / (double)scene_cells(scene);
+  const double way = s->farthest - fmax(s->area / packing / scene->domain.size[!s->axis], s->radius / count);
+  if (scene->fluid.none)
+    return spare * sqrt(2 * fmax(0, way) / fabs(scene->particles.gravity[s->axis])) <= (double)scene->run.steps;
   const double alone = estimate_settling(s->radius / count, scene->fluid.viscosity, s->weight / count);
   const double speed = alone * pow(1 - fmin(fraction, 1), hindrance);
-  const double way = s->farthest - fmax(s->area / packing / scene->domain.size[!s->axis], s->radius / count);
   return spare * way <= speed * (double)scene->run.steps;
 }
 
@@ -147,7 +149,7 @@ void advise_rest(const struct scene *scene)
     for (int end = 0; end < 2; end++) {
       const struct sediment s = gather(scene, axis, end == 1);
       if (s.count == 0 || scene_is_periodic(scene, axis) || !comes_to_rest(scene, &s)) continue;
-      advise_pile(scene, &s);
+      if (!scene->fluid.none) advise_pile(scene, &s);
       advise_overlap(scene, &s);
     }
 }

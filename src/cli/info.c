@@ -9,6 +9,7 @@
 #include "case/case_tree.h"
 #include "contact/substeps.h"
 #include "fluid/sweep.h"
+#include "sim/diagnostics.h"
 #include "sim/estimate.h"
 #include "sim/simulation.h"
 #include "sim/tuning.h"
@@ -55,9 +56,10 @@ static void print_units(const struct scene *scene)
   if (units->dx == 0) return;
   printf("units        cell %g m, step %g s: 1 cell/step is %g m/s, 1 cell/step^2 %g m/s^2\n", units->dx, units->dt,
          in_si(scene, 1, "cells/step"), in_si(scene, 1, "cells/step^2"));
-  printf("             box %g m x %g m, viscosity %g m^2/s, run of %g s", size[0] * units->dx, size[1] * units->dx,
-         in_si(scene, scene->fluid.viscosity, "cells^2/step"), (double)scene->run.steps * units->dt);
-  if (units->density > 0) printf(", fluid of %g kg/m^3", units->density);
+  printf("             box %g m x %g m, ", size[0] * units->dx, size[1] * units->dx);
+  if (!scene->fluid.none) printf("viscosity %g m^2/s, ", in_si(scene, scene->fluid.viscosity, "cells^2/step"));
+  printf("run of %g s", (double)scene->run.steps * units->dt);
+  if (units->density > 0) printf(", %s %g kg/m^3", scene->fluid.none ? "density 1 is" : "fluid of", units->density);
   printf("\n");
 }
 
@@ -76,6 +78,10 @@ static void advise_viscosity(const struct scene *scene, double wanted)
 
 static void print_fluid(const struct scene *scene)
 {
+  if (scene->fluid.none) {
+    printf("fluid        none: dry discs, no lattice\n");
+    return;
+  }
   char collision[CHOICE];
   const struct rates *rates = &scene->fluid.rates;
   const double tau = 1 / rates->s_nu;
@@ -157,6 +163,23 @@ static void print_force(const struct scene *scene)
     printf(": along no periodic axis; its effect depends on the sides\n");
 }
 
+/* Speeds without fluid, which only the search for contacts limits. */
+static void print_dry_speeds(const struct scene *scene)
+{
+  const struct estimate fastest = estimate_fastest(scene, scene->run.steps);
+  if (fastest.speed == 0) {
+    printf("speed        not determined by the case\n");
+    return;
+  }
+  printf("speed        about %.3g cells a step (%s), where nothing stops them\n", fastest.speed, fastest.from);
+  if (fastest.speed <= estimate_advised_speed(scene)) return;
+  printf("  note: above %g cells/step, and the run ends at %.3g, since contacts may be missed; better: %s <= %.3g %s",
+         estimate_advised_speed(scene), diagnostics_speed_limit, fastest.key, fastest.advised, fastest.unit);
+  if (scene->units.dx > 0)
+    printf(", or units.dt <= %.3g s", scene->units.dt * estimate_advised_speed(scene) / fastest.speed);
+  printf("\n");
+}
+
 static void print_speeds(const struct scene *scene)
 {
   const struct estimate fastest = estimate_fastest(scene, scene->run.steps);
@@ -190,8 +213,9 @@ static void print_discs(const struct scene *scene)
          scene->particles.count, motions[DISC_FREE], motions[DISC_FIXED], motions[DISC_DRIVEN], smallest, largest,
          area / box);
   if (smallest < 2) printf("  note: radius below 2 cells; forces on so small a disc are rough; better: radius >= 2\n");
-  printf("coupling     %s, %s\n", forms[scene->coupling.form],
-         choice_of("coupling.solve", scene->coupling.solve, solve));
+  if (!scene->fluid.none)
+    printf("coupling     %s, %s\n", forms[scene->coupling.form],
+           choice_of("coupling.solve", scene->coupling.solve, solve));
 }
 
 /* Prints the first few initial overlaps, and the number of further ones. */
@@ -241,8 +265,9 @@ static void print_contacts(const struct scene *scene, const struct stages *stage
 
 static void print_plan(const struct scene *scene)
 {
+  if (scene->fluid.none) return;
   struct tuning tuning;
-  tuning_start(&tuning, scene, threads_for(scene_cells(scene)));
+  tuning_start(&tuning, scene, stages_threads(scene));
   if (!tuning.decided)
     printf("blocking     in time, depth by trial in the first steps (run.json has it); fix it by --plan\n");
   else if (tuning.best.depth <= 1)
@@ -260,7 +285,8 @@ static double bytes_of_output(const struct scene *scene)
   enum { VALUES = 7 };
   const double mib = 1 << 20;
   double bytes = 0;
-  if (scene->output.frames.every > 0) bytes += 2 * sizeof(double) * (double)scene_cells(scene) + 8 * mib;
+  const double velocities = scene->fluid.none ? 0 : 2 * sizeof(double) * (double)scene_cells(scene);
+  if (scene->output.frames.every > 0) bytes += velocities + 8 * mib;
   if (scene->output.fields.every > 0) {
     const struct sample_grid grid = sample_grid_of(scene);
     bytes += VALUES * sizeof(double) * (double)sample_points(&grid) + 12 * mib;
@@ -278,8 +304,10 @@ static bool print_memory(const struct scene *scene, struct status *status)
     return status->code == DELBM_INVALID;
   }
   const double output = bytes_of_output(scene), all = program + memory.populations + memory.tables + output;
-  printf("memory       program %.4g MiB, fluid %.4g MiB (%.1f bytes a cell)", program / mib, memory.populations / mib,
-         memory.populations / (double)scene_cells(scene));
+  printf("memory       program %.4g MiB", program / mib);
+  if (!scene->fluid.none)
+    printf(", fluid %.4g MiB (%.1f bytes a cell)", memory.populations / mib,
+           memory.populations / (double)scene_cells(scene));
   if (scene->particles.count > 0) printf(", discs %.4g MiB", memory.tables / mib);
   if (output > 0) printf(", output %.4g MiB", output / mib);
   printf(", in all about %.4g MiB\n", all / mib);
@@ -293,14 +321,19 @@ static void print_stages(const struct scene *scene, const struct stages *stages)
   static const char *const occupation[] = {"left out: no discs", "once, before the first step: no disc moves",
                                            "every step"};
   printf("stages\n");
-  printf("  occupation %s\n", occupation[stages->occupation]);
-  printf("  exchange   %s\n", !stages->exchange                       ? "left out: no discs"
+  printf("  occupation %s\n", !stages->fluid ? "left out: no fluid" : occupation[stages->occupation]);
+  printf("  exchange   %s\n", !stages->fluid                          ? "left out: no fluid; move alone"
+                              : !stages->exchange                     ? "left out: no discs"
                               : stages->occupation == OCCUPATION_ONCE ? "gather only, for the forces: no disc is free"
                                                                       : "gather, solve, move");
   printf("  contact    %s\n", stages->pairs && stages->walls ? "pairs and sides"
                               : stages->pairs                ? "pairs; no sides: the box is periodic"
                               : stages->walls                ? "sides; no pairs: one disc"
                                                              : "left out: no contact is possible");
+  if (!stages->fluid) {
+    printf("  boundary   left out: no fluid\n  sweep      left out: no fluid\n");
+    return;
+  }
   printf("  boundary   %s\n", scene_is_periodic(scene, 0) && scene_is_periodic(scene, 1)
                                   ? "periodic images, with the sweep of each row"
                                   : "with the sweep of each row");
@@ -313,8 +346,9 @@ static int print_case(struct arguments *arguments)
   const struct scene *scene = &arguments->scene;
   struct status status;
   const struct stages stages = stages_of(scene);
-  const struct sweep_kernel *kernel = sweep_find(scene->fluid.kernel, scene->fluid.precision, &status);
-  if (!kernel) return report_error(&status);
+  const struct sweep_kernel *kernel = NULL;
+  if (stages.fluid && !(kernel = sweep_find(scene->fluid.kernel, scene->fluid.precision, &status)))
+    return report_error(&status);
   char title[TREE_TEXT]; /* without control characters, which a terminal would execute */
   tree_show(scene->title, title);
   printf("case         %s%s%s\n", scene->name, *title ? ": " : "", title);
@@ -322,15 +356,18 @@ static int print_case(struct arguments *arguments)
   print_units(scene);
   notes_print(&arguments->notes, "  note: ", stdout);
   print_fluid(scene);
-  print_speeds(scene);
-  if (stages.exchange) print_discs(scene);
+  if (stages.fluid)
+    print_speeds(scene);
+  else
+    print_dry_speeds(scene);
+  if (stages.discs) print_discs(scene);
   print_contacts(scene, &stages);
-  if (stages.exchange && !print_overlaps(scene, &status)) return report_error(&status);
+  if (stages.discs && !print_overlaps(scene, &status)) return report_error(&status);
   print_advice(scene);
   char binding[THREADS_TEXT];
   threads_binding(binding);
-  printf("run          %" PRId64 " steps, %d threads (%s), kernel %s\n", scene->run.steps,
-         threads_for(scene_cells(scene)), binding, kernel->name);
+  printf("run          %" PRId64 " steps, %d threads (%s)%s%s\n", scene->run.steps, stages_threads(scene), binding,
+         kernel ? ", kernel " : "", kernel ? kernel->name : "");
   print_plan(scene);
   if (!print_memory(scene, &status)) return report_error(&status);
   print_stages(scene, &stages);

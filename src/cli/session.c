@@ -165,7 +165,7 @@ static void announce(const struct scene *scene)
 {
   char binding[THREADS_TEXT];
   threads_binding(binding);
-  fprintf(stderr, "delbm: %d threads, %s\n", threads_for(scene_cells(scene)), binding);
+  fprintf(stderr, "delbm: %d threads, %s\n", stages_threads(scene), binding);
 }
 
 int session_run(const struct session *session)
@@ -178,7 +178,7 @@ int session_run(const struct session *session)
   if (!session->quiet) announce(session->scene);
   listen_to_signals();
   progress_start(&run.progress, style, stderr, simulation_step(run.simulation), run.scene->run.steps,
-                 (double)scene_cells(run.scene));
+                 run.scene->fluid.none ? 0 : (double)scene_cells(run.scene));
   run_steps(&run);
   conclude(&run);
   return run.outcome == OUTCOME_DONE ? DELBM_OK : (int)run.status.code;

@@ -88,6 +88,7 @@ static double block_mean(const struct picture *picture, int block, int column, i
 
 static void raster_fill(struct raster *raster, const struct picture *picture, int block)
 {
+  if (!picture->ux) return;
 #pragma omp parallel for schedule(static)
   for (int row = 0; row < raster->height; row++)
     for (int column = 0; column < raster->width; column++)

@@ -9,7 +9,7 @@ enum picture_colour { PICTURE_DISC = 0xf0f1f4, PICTURE_MARK = 0x868d9b, PICTURE_
 
 struct picture {
   int size[2];           /* cells, x then y */
-  const double *ux, *uy; /* velocity of the cells, row by row from the bottom */
+  const double *ux, *uy; /* velocity of the cells, row by row from the bottom; NULL without fluid: as at rest */
   bool periodic[2];      /* discs across such a side appear on both */
   const struct discs *discs;
   enum frame_quantity quantity;

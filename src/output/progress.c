@@ -38,17 +38,20 @@ static double fraction_done(const struct progress *progress, int64_t step)
   return progress->steps > 0 ? (double)step / (double)progress->steps : 1;
 }
 
-/* "42 %  4200/10000  512 MLUPS  0:12 left", with the time taken in place of the time left at the end. */
+/* "42 %  4200/10000  512 MLUPS  0:12 left", with the time taken in place of the time left at the end; without cells
+ * steps/s in place of MLUPS. */
 static void format_figures(const struct progress *progress, int64_t step, double now, char text[LINE_MAX_LENGTH])
 {
   double elapsed = now - progress->start;
   double rate = elapsed > 0 ? (double)(step - progress->first) / elapsed : 0, mlups = rate * progress->cells * 1e-6;
   bool ended = step >= progress->steps;
   char time[PROGRESS_TIME];
+  const bool lattice = progress->cells > 0;
+  const double speed = lattice ? mlups : rate;
   progress_time(time, ended ? elapsed : (double)(progress->steps - step) / rate);
-  snprintf(text, LINE_MAX_LENGTH, "%3d %%  %" PRId64 "/%" PRId64 "  %.*f MLUPS  %s %s",
-           (int)(100 * fraction_done(progress, step)), step, progress->steps, mlups < 100, mlups, time,
-           ended ? "taken" : "left");
+  snprintf(text, LINE_MAX_LENGTH, "%3d %%  %" PRId64 "/%" PRId64 "  %.*f %s  %s %s",
+           (int)(100 * fraction_done(progress, step)), step, progress->steps, speed < 100, speed,
+           lattice ? "MLUPS" : "steps/s", time, ended ? "taken" : "left");
 }
 
 /* Cells of the bar that fit on the terminal beside `used` characters; 0 if fewer than BAR_MIN. */

@@ -37,7 +37,7 @@ struct recorder {
   struct series rows, frames, snapshots, checkpoints;
   int next_checkpoint;  /* index of the checkpoint to be written next */
   uint32_t fingerprint; /* of the case */
-  double *ux, *uy;      /* fields of a frame; NULL without frames */
+  double *ux, *uy;      /* fields of a frame; NULL without frames or without fluid */
   double *values;       /* colour values of discs; NULL: plain discs */
   double start;         /* clock at step 0, less interruptions */
   double seconds;       /* time of output */
@@ -122,9 +122,10 @@ static double *allocate_field(const struct recorder *recorder, struct status *st
 static bool prepare_velocities(struct recorder *recorder, struct status *status)
 {
   if (recorder->frames.every == 0) return true;
-  recorder->ux = allocate_field(recorder, status);
-  if (recorder->ux) recorder->uy = allocate_field(recorder, status);
-  if (!recorder->uy || recorder->scene->output.frames.discs == FRAME_DISCS_PLAIN) return recorder->uy;
+  if (!recorder->scene->fluid.none &&
+      !((recorder->ux = allocate_field(recorder, status)) && (recorder->uy = allocate_field(recorder, status))))
+    return false;
+  if (recorder->scene->output.frames.discs == FRAME_DISCS_PLAIN) return true;
   const size_t discs = recorder->scene->particles.count;
   recorder->values = memory_allocate(discs > 0 ? discs : 1, sizeof(double), "the colours of a frame", status);
   return recorder->values;
@@ -295,7 +296,10 @@ static double set_values(const struct recorder *recorder, const struct discs *di
     largest = fmax(largest, recorder->values[i]);
   }
   if (kind == FRAME_DISCS_HEIGHT) return scene->domain.size[1];
-  if (kind == FRAME_DISCS_SPEED && scene->output.frames.quantity == FRAME_SPEED) return 0;
+  if (kind == FRAME_DISCS_SPEED && scene->output.frames.quantity == FRAME_SPEED) {
+    if (!scene->fluid.none) return 0;
+    if (scene->output.frames.maximum > 0) return scene->output.frames.maximum;
+  }
   return largest > 0 ? largest : 1;
 }
 
@@ -304,7 +308,7 @@ static bool record_frame(struct recorder *recorder, struct simulation *simulatio
   const struct scene *scene = recorder->scene;
   char *path = numbered_path(recorder->frames_path, simulation_step(simulation), "png", status);
   if (!path) return false;
-  simulation_fields(simulation, NULL, recorder->ux, recorder->uy);
+  if (!scene->fluid.none) simulation_fields(simulation, NULL, recorder->ux, recorder->uy);
   struct picture picture = {.size = {scene->domain.size[0], scene->domain.size[1]},
                             .ux = recorder->ux,
                             .uy = recorder->uy,

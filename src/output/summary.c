@@ -77,11 +77,12 @@ static void add_units(struct figures *figures, const struct units *units)
   }
 }
 
+/* 0 without fluid. */
 static double mlups(const struct summary *summary)
 {
   const int *size = summary->scene->domain.size;
   double updates = (double)size[0] * size[1] * (double)summary->steps;
-  return summary->seconds > 0 ? updates / summary->seconds * 1e-6 : 0;
+  return summary->seconds > 0 && !summary->scene->fluid.none ? updates / summary->seconds * 1e-6 : 0;
 }
 
 static struct figures figures_of(const struct summary *summary)
