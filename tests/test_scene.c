@@ -463,7 +463,7 @@ Test(scene, override_that_is_wrong_is_named)
       {"output.frames_every=1",
        "--set output.frames_every=1: unknown key output.frames_every; did you mean output.frames.every?"},
       {"fluid.nu=1",
-       "--set fluid.nu=1: unknown key fluid.nu; expected one of viscosity, force, collision, rates, magic, "
+       "--set fluid.nu=1: unknown key fluid.nu; expected one of none, viscosity, force, collision, rates, magic, "
        "precision, zero_flux, kernel"},
       {"gravity=[0, 1]", "--set gravity=[0, 1]: unknown key gravity; did you mean particles.gravity?"},
       {"contact.friction=1",

@@ -1,6 +1,7 @@
 #include "case/case_check.h"
 
 #include "base/memory.h"
+#include "case/case_keys.h"
 #include "case/case_overlaps.h"
 #include "case/case_query.h"
 #include "case/case_units.h"
@@ -10,6 +11,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 static const double max_cells = 8589934592.0; /* 2^33 */
 static const double cell_bytes = 72;          /* nine populations in double precision */
@@ -23,7 +25,10 @@ static void check_cells(struct draft *draft)
 {
   const int *size = draft->scene.domain.size;
   double cells = (double)size[0] * size[1];
-  if (draft_knows(draft, "domain.size") && cells > max_cells)
+  if (!draft_knows(draft, "domain.size") || cells <= max_cells) return;
+  if (draft->scene.fluid.none)
+    draft_refuse(draft, "domain.size", "at most 2^33 cells, not %.4g", cells);
+  else
     draft_refuse(draft, "domain.size", "at most 2^33 cells; these would take %.0f GiB at 72 bytes a cell",
                  cells * cell_bytes / gib);
 }
@@ -89,7 +94,7 @@ static void check_sides(struct draft *draft)
     if (!known) continue;
     if (sides[s].type == SIDE_PERIODIC && sides[other].type != SIDE_PERIODIC)
       draft_refuse(draft, side_keys[s].type, "the %s side to be periodic too, or neither", side_name_text(other));
-    if (sides[s].type == SIDE_INLET && !has_side(draft, SIDE_OUTLET))
+    if (sides[s].type == SIDE_INLET && !has_side(draft, SIDE_OUTLET) && !draft->scene.fluid.none)
       draft_refuse(draft, side_keys[s].type, "an outlet on another side, for the inflow");
   }
 }
@@ -99,6 +104,38 @@ static void refuse_if_given(struct draft *draft, const char *const paths[], size
   for (size_t i = 0; i < count; i++) {
     if (draft_has(draft, paths[i])) draft_refuse(draft, paths[i], "%s", expected);
   }
+}
+
+/* Without fluid: refuses the keys of the fluid and of the coupling. */
+static void check_keys_of_fluid(struct draft *draft)
+{
+  size_t count;
+  const struct key *keys = key_table(&count);
+  for (size_t i = 0; i < count; i++) {
+    const char *of_fluid = key_within(keys[i].path, "fluid");
+    if (!of_fluid && !key_within(keys[i].path, "coupling")) continue;
+    if ((!of_fluid || strcmp(of_fluid, "none") != 0) && draft_has(draft, keys[i].path))
+      draft_refuse(draft, keys[i].path, "no such key with fluid: none");
+  }
+}
+
+/* Without fluid: what needs cells, or fluid that enters, is refused; and there must be discs. */
+static void check_dry(struct draft *draft)
+{
+  const struct scene *scene = &draft->scene;
+  if (!scene->fluid.none) return;
+  check_keys_of_fluid(draft);
+  for (int s = 0; s < SIDE_COUNT; s++)
+    if (scene->domain.side[s].type == SIDE_INLET || scene->domain.side[s].type == SIDE_OUTLET)
+      draft_refuse(draft, side_keys[s].type, "wall, periodic or slip: with fluid: none no fluid enters or leaves");
+  if (scene->contact.area == AREA_CELLS)
+    draft_refuse(draft, "contact.area", "lens: areas by cells are those of the cells of a fluid, and there is none");
+  if (draft_has(draft, "contact.search") && draft_knows(draft, "contact.search") &&
+      scene->contact.search == SEARCH_GRID)
+    draft_refuse(draft, "contact.search", "linked-cell: the grid is that of the cells of a fluid, and there is none");
+  if (scene->output.fields.every > 0) draft_refuse(draft, "output.fields.every", "0: fluid: none has no fields");
+  if (scene->particles.listed == 0 && !scene->particles.fill.present && draft_knows(draft, "particles.discs"))
+    draft_refuse(draft, "particles.discs", "at least one disc, since with fluid: none there is nothing else");
 }
 
 /* The collision operator decides which rates are allowed. */
@@ -127,6 +164,7 @@ static void check_rates(struct draft *draft)
 {
   const char *magic = draft_has(draft, "fluid.magic") ? "fluid.magic" : "fluid.rates.magic";
   double viscosity = draft->scene.fluid.viscosity;
+  if (draft->scene.fluid.none) return;
   check_rate_keys(draft);
   if (!draft_knows(draft, "fluid.viscosity")) return;
   if (rate_from_viscosity(viscosity) >= 2) {
@@ -163,7 +201,9 @@ static void check_restitution(struct draft *draft)
 
 static void check_zero_flux(struct draft *draft)
 {
-  if (!draft_has(draft, "fluid.zero_flux") || !draft_knows(draft, "fluid.zero_flux") || !sides_known(draft)) return;
+  if (draft->scene.fluid.none || !draft_has(draft, "fluid.zero_flux") || !draft_knows(draft, "fluid.zero_flux") ||
+      !sides_known(draft))
+    return;
   bool closed = scene_is_closed(&draft->scene, 0) || scene_is_closed(&draft->scene, 1);
   if (draft->scene.fluid.zero_flux && !closed)
     draft_refuse(draft, "fluid.zero_flux", "false, because walls close neither axis");
@@ -211,7 +251,8 @@ static void check_disc(struct draft *draft, size_t i)
   double speed = hypot(velocity[0], velocity[1]) + fabs(disc->spin) * disc->radius;
   if (speed > scene_max_speed)
     draft_refuse(draft, disc_path(path, i, disc->spin != 0 ? "spin" : "velocity"),
-                 "|velocity| + |spin| radius <= %g, not %.3g, for the Mach number's sake", scene_max_speed, speed);
+                 "|velocity| + |spin| radius <= %g, not %.3g, for the sake of %s", scene_max_speed, speed,
+                 draft->scene.fluid.none ? "contacts, which a faster disc may miss" : "the Mach number");
 }
 
 /* Centre of a disc. */
@@ -285,13 +326,13 @@ static void check_depth(struct draft *draft, const struct case_overlap *overlap)
 }
 
 /* Largest overlap with a side of a disc at distance `gap` with this speed, at most its diameter. Kinetic energy on arrival
- * (drag coefficient 1, mass of the fluid inside included) equals the energy of the contact's spring. */
+ * (in fluid: drag coefficient 1, mass of the fluid inside included) equals the energy of the contact's spring. */
 static double depth_of_impact(const struct draft *draft, const struct disc_spec *disc, double gap, double speed)
 {
   const struct scene *scene = &draft->scene;
   const double density = disc->density > 0 ? disc->density : draft->density;
-  const double mass = disc_spec_area(disc) * (density + 1);
-  const double arrival = speed * exp(-gap * disc->radius / mass);
+  const double mass = disc_spec_area(disc) * (scene->fluid.none ? density : density + 1);
+  const double arrival = scene->fluid.none ? speed : speed * exp(-gap * disc->radius / mass);
   const struct contact_law law = contact_law_of(scene);
   double low = 0, high = 2 * disc->radius;
   for (int k = 0; k < 40; k++) {
@@ -307,18 +348,19 @@ static void check_impact(struct draft *draft, size_t i)
 {
   const struct scene *scene = &draft->scene;
   const struct disc_spec *disc = &scene->particles.discs[i];
+  const double max_depth = scene->fluid.none ? disc->radius : max_depth_in_side;
   for (enum side_name side = 0; side < SIDE_COUNT && disc->motion == DISC_FREE; side++) {
     const double towards = disc->velocity[side_axis(side)], speed = side_is_high(side) ? towards : -towards;
     const double gap = scene_distance_to_side(scene, side, disc->position) - disc->radius;
     if (scene->domain.side[side].type == SIDE_PERIODIC || speed <= 0) continue;
     const double depth = depth_of_impact(draft, disc, fmax(0, gap), speed);
     char path[DISC_PATH];
-    if (depth > max_depth_in_side)
+    if (depth > max_depth)
       draft_refuse(
           draft, disc_path(path, i, "velocity"),
           "one that takes the disc at most %g cells beyond the %s side, not %.3g; a larger contact.stiffness stops "
           "it sooner",
-          max_depth_in_side, side_name_text(side), depth);
+          max_depth, side_name_text(side), depth);
   }
 }
 
@@ -329,7 +371,7 @@ static bool check_depths(struct draft *draft, const struct tree_node *list, stru
   for (size_t i = 0; i < list->count; i++) known = known && disc_known(list, i);
   if (!known || case_errors_total(draft->errors) > 0) return true; /* wrong positions are reported first */
   const bool ok = case_overlaps_find(&draft->scene, list->count, &found, status);
-  for (size_t k = 0; ok && k < found.count; k++) check_depth(draft, &found.list[k]);
+  for (size_t k = 0; ok && k < found.count && !draft->scene.fluid.none; k++) check_depth(draft, &found.list[k]);
   for (size_t i = 0; ok && i < list->count; i++) check_impact(draft, i);
   case_overlaps_clear(&found);
   return ok;
@@ -429,6 +471,7 @@ bool case_check(struct draft *draft, struct status *status)
   case_units_check(draft);
   check_cells(draft);
   check_sides(draft);
+  check_dry(draft);
   check_rates(draft);
   check_zero_flux(draft);
   check_substeps(draft);

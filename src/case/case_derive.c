@@ -58,7 +58,7 @@ static void derive_zero_flux(struct draft *draft)
   if (draft_has(draft, "fluid.zero_flux")) return;
   bool closed = scene_is_closed(scene, 0) || scene_is_closed(scene, 1);
   bool heavy = scene->particles.gravity[0] != 0 || scene->particles.gravity[1] != 0;
-  scene->fluid.zero_flux = closed && heavy && has_free_discs(scene);
+  scene->fluid.zero_flux = !scene->fluid.none && closed && heavy && has_free_discs(scene);
 }
 
 static void derive_shown(struct draft *draft)
@@ -69,9 +69,19 @@ static void derive_shown(struct draft *draft)
   memcpy(scene->output.fields.region, box, sizeof box);
 }
 
+/* Without fluid: no rates, and no rows of painted cells in which pairs are searched. */
+static void derive_dry(struct draft *draft)
+{
+  draft->scene.fluid.rates = (struct rates){0};
+  draft->scene.contact.search = SEARCH_LINKED_CELL;
+}
+
 void case_derive(struct draft *draft)
 {
-  derive_rates(draft);
+  if (draft->scene.fluid.none)
+    derive_dry(draft);
+  else
+    derive_rates(draft);
   derive_densities(draft);
   derive_fill(draft);
   derive_zero_flux(draft);

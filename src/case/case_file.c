@@ -139,7 +139,7 @@ static bool check_required(const struct draft *draft, const struct place *place,
   size_t count;
   const struct key *keys = key_table(&count);
   for (size_t i = 0; i < count; i++) {
-    const char *name = key_is_required(&keys[i]) ? key_within(keys[i].path, place->section) : NULL;
+    const char *name = draft_requires(draft, &keys[i]) ? key_within(keys[i].path, place->section) : NULL;
     if (name && is_missing(place, section, name)) complete = refuse_missing(draft, place, section, &keys[i]);
   }
   return complete;
@@ -196,9 +196,10 @@ static bool read_entry(struct draft *draft, const struct place *place, const str
 static bool read_section(struct draft *draft, const struct place *place, struct tree_node *node)
 {
   if (node->kind != TREE_MAPPING) {
-    char names[VALUE_TEXT], expected[VALUE_TEXT + 32];
+    char names[VALUE_TEXT], expected[VALUE_TEXT + 48];
     key_names(place->section, names, sizeof names);
-    snprintf(expected, sizeof expected, "a mapping with the keys %s", names);
+    snprintf(expected, sizeof expected, "%sa mapping with the keys %s",
+             strcmp(place->section, "fluid") == 0 ? "none, or " : "", names);
     return refuse(draft, place->path, node, expected);
   }
   bool valid = check_required(draft, place, node);
@@ -225,6 +226,13 @@ static bool read_defaults(struct draft *draft, struct tree *tree, struct status 
   return true;
 }
 
+/* Reads fluid.none, on which required keys depend. */
+static void prepare_fluid(struct draft *draft)
+{
+  const struct tree_node *node = tree_find(draft->root, "fluid.none");
+  if (node) value_read(key_find("fluid.none"), node, &draft->scene.units, draft);
+}
+
 /* Allocates the listed discs, and detects particles.fill. */
 static bool prepare_particles(struct draft *draft, struct status *status)
 {
@@ -248,7 +256,7 @@ static bool read_tree(struct draft *draft, struct tree *tree, const struct yaml_
     if (!override_apply(tree, &draft->root, set[i], draft->errors, status) && case_errors_total(draft->errors) == known)
       return false;
   }
-  return override_expand_sides(tree, &draft->root, status);
+  return override_expand(tree, &draft->root, status);
 }
 
 static char *copy_text(const char *text, struct status *status)
@@ -276,6 +284,7 @@ static bool read_draft(struct draft *draft, struct tree *tree, const struct yaml
   if (!read_tree(draft, tree, text, set, set_count, status) || !read_defaults(draft, tree, status) ||
       !prepare_particles(draft, status))
     return false;
+  prepare_fluid(draft);
   case_units_read(draft);
   read_section(draft, &root, draft->root);
   return case_check(draft, status) && case_errors_total(draft->errors) == 0 && finish(draft, status);

@@ -88,27 +88,50 @@ bool override_apply(struct tree *tree, struct tree_node **root, const char *text
   if (!key) return false;
   const struct yaml_text value = {override.origin, false, equals + 1, strlen(equals + 1)};
   override.value = yaml_read(tree, &value, errors, status);
-  return override.value && override_expand_sides(tree, root, status) && put(&override, root, key);
+  return override.value && override_expand(tree, root, status) && put(&override, root, key);
 }
 
-bool override_expand_sides(struct tree *tree, struct tree_node **root, struct status *status)
+/* Puts {key: value} in place of `short_form`, at the path. */
+static bool expand(const struct override *override, struct tree_node **root, const char *path,
+                   const struct tree_node *short_form, const char *key)
+{
+  struct override whole = *override;
+  struct tree_node *mapping = make_node(override, TREE_MAPPING, NULL);
+  struct tree_node *name = make_node(override, TREE_SCALAR, key);
+  struct tree_entry *entry = tree_allocate(override->tree, 1, sizeof *entry, override->status);
+  if (!mapping || !name || !entry) return false;
+  *entry = (struct tree_entry){name, override->value};
+  mapping->line = short_form->line;
+  mapping->column = short_form->column;
+  mapping->entries = entry;
+  mapping->count = 1;
+  whole.value = mapping;
+  return put(&whole, root, path);
+}
+
+static bool expand_side(struct tree *tree, struct tree_node **root, const char *path, struct status *status)
+{
+  struct tree_node *side = tree_find(*root, path);
+  if (!side || side->kind != TREE_SCALAR) return true;
+  const struct override override = {.tree = tree, .status = status, .origin = side->origin, .value = side};
+  return expand(&override, root, path, side, "type");
+}
+
+static bool expand_fluid(struct tree *tree, struct tree_node **root, struct status *status)
+{
+  struct tree_node *fluid = tree_find(*root, "fluid"), *flag;
+  if (!fluid || fluid->kind != TREE_SCALAR || strcmp(fluid->text, "none") != 0) return true;
+  struct override override = {.tree = tree, .status = status, .origin = fluid->origin};
+  if (!(flag = tree_copy(tree, fluid, status))) return false;
+  flag->text = "true";
+  override.value = flag;
+  return expand(&override, root, "fluid", fluid, "none");
+}
+
+bool override_expand(struct tree *tree, struct tree_node **root, struct status *status)
 {
   static const char *const sides[] = {"domain.left", "domain.right", "domain.bottom", "domain.top"};
-  for (size_t i = 0; i < sizeof sides / sizeof sides[0]; i++) {
-    struct tree_node *side = tree_find(*root, sides[i]);
-    if (!side || side->kind != TREE_SCALAR) continue;
-    struct override override = {.tree = tree, .status = status, .origin = side->origin};
-    struct tree_node *mapping = make_node(&override, TREE_MAPPING, NULL);
-    struct tree_node *key = make_node(&override, TREE_SCALAR, "type");
-    struct tree_entry *entry = tree_allocate(tree, 1, sizeof *entry, status);
-    if (!mapping || !key || !entry) return false;
-    *entry = (struct tree_entry){key, side};
-    mapping->line = side->line;
-    mapping->column = side->column;
-    mapping->entries = entry;
-    mapping->count = 1;
-    override.value = mapping;
-    if (!put(&override, root, sides[i])) return false;
-  }
-  return true;
+  for (size_t i = 0; i < sizeof sides / sizeof sides[0]; i++)
+    if (!expand_side(tree, root, sides[i], status)) return false;
+  return expand_fluid(tree, root, status);
 }

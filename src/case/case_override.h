@@ -11,7 +11,7 @@
 bool override_apply(struct tree *tree, struct tree_node **root, const char *text, struct case_errors *errors,
                     struct status *status);
 
-/* Expands the short form of a side, `left: wall`, to `left: {type: wall}`. */
-bool override_expand_sides(struct tree *tree, struct tree_node **root, struct status *status);
+/* Expands short forms: of a side, `left: wall`, to `left: {type: wall}`, and `fluid: none` to `fluid: {none: true}`. */
+bool override_expand(struct tree *tree, struct tree_node **root, struct status *status);
 
 #endif

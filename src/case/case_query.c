@@ -1,13 +1,16 @@
 #include "case/case_query.h"
 
-#include "case/case_keys.h"
-
 #include <stdarg.h>
 #include <string.h>
 
 bool draft_has(const struct draft *draft, const char *path)
 {
   return tree_find(draft->root, path) != NULL;
+}
+
+bool draft_requires(const struct draft *draft, const struct key *key)
+{
+  return key_is_required(key) && !(draft->scene.fluid.none && key_within(key->path, "fluid"));
 }
 
 static bool is_required(const char *path)

@@ -3,9 +3,13 @@
 #define DELBM_CASE_CASE_QUERY_H
 
 #include "case/case_draft.h"
+#include "case/case_keys.h"
 
 /* True if the case has the key (with any value). */
 bool draft_has(const struct draft *draft, const char *path);
+
+/* True if the case must have the key. */
+bool draft_requires(const struct draft *draft, const struct key *key);
 
 /* True if the value of the key is valid: allowed by the table, or the default. */
 bool draft_knows(const struct draft *draft, const char *path);

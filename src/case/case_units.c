@@ -56,7 +56,11 @@ void case_units_check(struct draft *draft)
   const bool dt = draft_has(draft, "units.dt"), viscosity = draft_has(draft, "units.viscosity");
   if (!draft_has(draft, "units.dx")) draft_refuse(draft, "units.dx", "the length of a cell, such as 0.1 mm");
   if (dt && viscosity) draft_refuse(draft, "units.viscosity", "dt or viscosity, from which dt follows, not both");
-  if (!dt && !viscosity) draft_refuse(draft, "units.dt", "the duration of a step, such as 0.5 ms, or units.viscosity");
+  if (!dt && !viscosity)
+    draft_refuse(draft, "units.dt", "the duration of a step, such as 0.5 ms%s",
+                 draft->scene.fluid.none ? "" : ", or units.viscosity");
+  if (!dt && viscosity && draft->scene.fluid.none)
+    draft_refuse(draft, "units.viscosity", "units.dt in its place: fluid: none has no viscosity from which dt follows");
   if (!dt && viscosity && step_is_open(draft))
     draft_refuse(draft, "fluid.viscosity", "a viscosity > 0 in m^2/s, from which and from units.viscosity dt follows");
 }

@@ -14,12 +14,23 @@ static struct draft draft_from_scene(const struct scene *scene)
   return (struct draft){.scene = *scene, .title = scene->title ? scene->title : "", .kernel = scene->fluid.kernel};
 }
 
+/* True for keys without a meaning in a scene without fluid. */
+static bool is_of_fluid(const struct key *key)
+{
+  static const char *const sections[] = {"fluid", "coupling", "run.plan", "output.fields"};
+  for (size_t i = 0; i < sizeof sections / sizeof sections[0]; i++)
+    if (key_within(key->path, sections[i])) return true;
+  return false;
+}
+
 /* True for keys without effect in this scene, or implied by another key. */
 static bool is_idle(const struct key *key, const struct scene *scene)
 {
   if (strcmp(key->path, "units.viscosity") == 0) return true;
   if (strcmp(key->path, "units.density") == 0) return scene->units.density == 0;
   if (key_within(key->path, "units")) return scene->units.dx == 0;
+  if (strcmp(key->path, "fluid.none") == 0) return true;
+  if (scene->fluid.none && is_of_fluid(key)) return true;
   if (strcmp(key->path, "fluid.rates.magic") == 0) return true;
   if (strcmp(key->path, "contact.restitution") == 0) return scene->contact.restitution == 0;
   if (strncmp(key->path, "contact.damping", strlen("contact.damping")) == 0) return scene->contact.restitution > 0;
@@ -166,6 +177,15 @@ static bool is_compared(const struct key *key)
   return false;
 }
 
+/* Writes the first line of the section of a key; "fluid: none", and nothing for a section without keys. */
+static void write_heading(const struct key *key, const struct scene *scene, FILE *file)
+{
+  const int top = (int)strcspn(key->path, ".");
+  if (key_within(key->path, "units") && scene->units.dx == 0) return;
+  if (key_within(key->path, "coupling") && scene->fluid.none) return;
+  fprintf(file, "%.*s:%s\n", top, key->path, key_within(key->path, "fluid") && scene->fluid.none ? " none" : "");
+}
+
 /* Writes all sections, or the sections of the fingerprint. */
 static void write_case(const struct scene *scene, bool compared_alone, FILE *file)
 {
@@ -179,8 +199,7 @@ static void write_case(const struct scene *scene, bool compared_alone, FILE *fil
     }
     size_t top = strcspn(keys[i].path, ".");
     bool opens = i == 0 || strncmp(keys[i].path, keys[i - 1].path, top + 1) != 0;
-    const bool none = key_within(keys[i].path, "units") && scene->units.dx == 0;
-    if (keys[i].path[top] == '.' && opens && !none) fprintf(file, "%.*s:\n", (int)top, keys[i].path);
+    if (keys[i].path[top] == '.' && opens) write_heading(&keys[i], scene, file);
     i += write_rows(&draft, &keys[i], keys + count, file);
   }
 }
