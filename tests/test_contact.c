@@ -222,7 +222,7 @@ static void lone_create(struct lone *l, const struct scene *contact, const doubl
   cr_assert(discs_create(&l->discs, &l->scene, &status) && table_create(&l->table, 2, &status) &&
                 table_build(&l->table, &l->scene, &l->discs, &list, &(struct contact_states){0}, &status),
             "%s", status.message);
-  l->table.has_spin = true;
+  l->table.has_spin = l->table.limited = true;
   for (size_t block = 0; block < l->table.blocks; block++) table_fill(&l->table, &l->scene, &l->discs, &l->law, block);
   for (int k = 0; k < 2; k++)
     l->response[k] =

@@ -8,7 +8,7 @@
  * and the compliances c_n, c_t, c_r: separation, slip and rolling speed per impulse, with the response K of both bodies, hence
  * with the inertia of the coupled fluid.
  *
- * Normal impulse J_n = duration max(0, F_s + eta v), limited by the stored energy (law.h, state.h).
+ * Normal impulse J_n = duration max(0, F_s + eta v) (law.h).
  *
  * Friction (Cundall & Strack 1979): a spring of force F and stiffness k_t = tangential_ratio dF_s/d delta, with a damper
  * eta_t = sqrt(tangential_ratio) eta. While the overlap grows F' = F + k_t u dt; when k_t falls, F is reduced in proportion, so
@@ -18,8 +18,9 @@
  * Rolling friction (Ai, Chen, Rotter & Ooi 2011, model C): the same spring and damper for the torque, with the rolling speed r
  * in place of u, the stiffness k_r = 3 (mu_r R*)^2 dF_s/d delta, and the limit mu_r R* F_n.
  *
- * Neither spring is stiffer than its sub-step resolves: k_t <= 1/(c_t h^2); and no damper stops more than half of its motion
- * in a sub-step: eta_t <= 1/(2 c_t h).
+ * Where the number of sub-steps does not follow from the contacts (table.h, `limited`), the stored energy limits J_n, no spring
+ * is stiffer than a sub-step resolves, k_t <= 1/(c_t h^2), and no damper stops more than half of its motion in a sub-step,
+ * eta_t <= 1/(2 c_t h); c_r likewise.
  *
  * Loops run over whole vectors. Elements past the last entry are copies of the first and are not stored. Functions write only to
  * the entries of their block: threads need no locks. */
@@ -57,40 +58,49 @@ static void clear_state(struct contact_table *t, size_t e)
   t->live[e] = 0;
 }
 
+/* The margin of each entry of a block: positive if the gap is below `within`. */
+static inline void find_margins(const struct contact_pass *p, size_t block, int n, double *restrict margin)
+{
+  const struct contact_table *t = p->table;
+  const size_t first = table_first(block);
+  const uint32_t *restrict a = t->a + first, *restrict b = t->b + first;
+  const double *restrict x = p->at.x, *restrict y = p->at.y, within = p->within;
+  const double *restrict ra = t->radius[0] + first, *restrict rb = t->radius[1] + first;
+  struct body_pairs places;
+  places.count = n;
+  if (table_is_of_sides(t, block)) {
+    for (int k = 0; k < n; k++) place_side(p->scene, x, y, a[k], b[k], &places, k);
+#pragma omp simd
+    for (int k = 0; k < n; k++) margin[k] = ra[k] + within - places.distance[k];
+  } else {
+    for (int k = 0; k < n; k++) place_body(x, y, a[k], b[k], &places, k);
+    place_nearest_images(p->scene, &places);
+#pragma omp simd
+    for (int k = 0; k < n; k++) {
+      const double reach = ra[k] + rb[k] + within, dx = places.dx[k], dy = places.dy[k];
+      margin[k] = reach * reach - (dx * dx + dy * dy);
+    }
+  }
+}
+
 static void KERNEL(select)(const struct contact_pass *p, size_t block)
 {
   struct contact_table *t = p->table;
   const size_t first = table_first(block);
-  const int count = table_entries(t, block), n = whole_vectors(count);
-  const double *restrict ra = t->radius[0] + first, *restrict rb = t->radius[1] + first;
-  struct body_pairs places = {.count = n};
-  double near[BLOCK];
-  for (int k = 0; k < n; k++) {
-    const size_t e = first + (size_t)(k < count ? k : 0);
-    if (table_is_of_sides(t, block))
-      place_side(p->scene, p->at.x, p->at.y, t->a[e], t->b[e], &places, k);
-    else
-      place_body(p->at.x, p->at.y, t->a[e], t->b[e], &places, k);
-  }
-  if (table_is_of_sides(t, block)) {
-#pragma omp simd
-    for (int k = 0; k < n; k++) near[k] = ra[k] + p->within - places.distance[k];
-  } else {
-    place_nearest_images(p->scene, &places);
-#pragma omp simd
-    for (int k = 0; k < n; k++) {
-      const double reach = ra[k] + rb[k] + p->within;
-      near[k] = reach * reach - (places.dx[k] * places.dx[k] + places.dy[k] * places.dy[k]);
-    }
-  }
+  const int count = table_entries(t, block);
+  double margin[BLOCK];
+  uint8_t near[BLOCK], is_near[BLOCK];
   int found = 0;
+  find_margins(p, block, whole_vectors(count), margin);
   for (int k = 0; k < count; k++) {
-    const bool is_near = near[k] > 0;
-    t->near[first + (size_t)found] = (uint8_t)k;
-    found += is_near;
-    t->is_near[first + (size_t)k] = is_near;
-    if (!is_near && t->live[first + (size_t)k]) clear_state(t, first + (size_t)k);
+    is_near[k] = margin[k] > 0;
+    near[found] = (uint8_t)k;
+    found += is_near[k];
   }
+  for (int k = 0; k < count; k++)
+    if (t->live[first + (size_t)k] > is_near[k]) clear_state(t, first + (size_t)k);
+  memcpy(t->is_near + first, is_near, (size_t)count);
+  memcpy(t->near + first, near, (size_t)found);
   t->near_count[block] = (uint8_t)found;
   memset(t->fx + first, 0, BLOCK * sizeof *t->fx);
   memset(t->fy + first, 0, BLOCK * sizeof *t->fy);
@@ -103,7 +113,7 @@ static void KERNEL(select)(const struct contact_pass *p, size_t block)
 struct lanes {
   int count, n; /* entries; the same in whole vectors */
   bool sides;
-  size_t entry[BLOCK];
+  uint8_t entry[BLOCK]; /* counted from the first of the block */
   struct body_pairs pairs;
   struct body_overlaps overlaps;
   double strength[BLOCK], damper[BLOCK], touch[BLOCK];
@@ -114,73 +124,95 @@ struct lanes {
   double force[BLOCK], stiffness[BLOCK], eta[BLOCK], normal[BLOCK];
 };
 
-static inline void load_motion(const struct contact_pass *p, struct lanes *l, int k, uint32_t a, uint32_t b)
+/* Element k of the relative motion of discs a and b. */
+static inline void load_motion(const struct disc_motions *at, struct lanes *restrict l, int k, uint32_t a, uint32_t b)
 {
-  const struct response *ra = &p->response[a], *rb = &p->response[b];
-  l->vx[k] = p->at.vx[a] - p->at.vx[b];
-  l->vy[k] = p->at.vy[a] - p->at.vy[b];
-  l->ax[k] = ra->dvx - rb->dvx;
-  l->ay[k] = ra->dvy - rb->dvy;
-  l->xx[k] = ra->xx + rb->xx;
-  l->xy[k] = ra->xy + rb->xy;
-  l->yy[k] = ra->yy + rb->yy;
+  l->vx[k] = at->vx[a] - at->vx[b];
+  l->vy[k] = at->vy[a] - at->vy[b];
 }
 
-static inline void load_motion_to_side(const struct contact_pass *p, struct lanes *l, int k, uint32_t a, uint32_t b)
+static inline void load_motion_to_side(const struct contact_pass *p, struct lanes *restrict l, int k, uint32_t a,
+                                       uint32_t b)
 {
   const enum side_name side = (enum side_name)(b - contact_sides);
-  const struct response *ra = &p->response[a];
   l->vx[k] = p->at.vx[a] - wall_velocity(p->scene, side, 0);
   l->vy[k] = p->at.vy[a] - wall_velocity(p->scene, side, 1);
-  l->ax[k] = ra->dvx;
-  l->ay[k] = ra->dvy;
-  l->xx[k] = ra->xx;
-  l->xy[k] = ra->xy;
-  l->yy[k] = ra->yy;
 }
 
-static inline void load_spin(const struct contact_pass *p, struct lanes *l, int k, int end, uint32_t i)
+/* Element k of the sum of the responses; without b for a side. */
+static inline void load_response(const struct response *a, const struct response *b, struct lanes *restrict l, int k)
 {
-  const bool side = contact_is_with_side(i);
-  const struct response *r = side ? NULL : &p->response[i];
-  l->omega[end][k] = side ? 0 : p->at.omega[i];
-  l->domega[end][k] = side ? 0 : r->domega;
-  l->xw[end][k] = side ? 0 : r->xw;
-  l->yw[end][k] = side ? 0 : r->yw;
-  l->ww[end][k] = side ? 0 : r->ww;
+  l->ax[k] = a->dvx - b->dvx;
+  l->ay[k] = a->dvy - b->dvy;
+  l->xx[k] = a->xx + b->xx;
+  l->xy[k] = a->xy + b->xy;
+  l->yy[k] = a->yy + b->yy;
 }
 
-/* Loads the near entries of a block; `spin`: with what torques need. */
-static inline void load(const struct contact_pass *p, size_t block, bool spin, struct lanes *l)
+static inline void load_spin_response(const struct response *r, struct lanes *restrict l, int end, int k)
+{
+  l->domega[end][k] = r->domega;
+  l->xw[end][k] = r->xw;
+  l->yw[end][k] = r->yw;
+  l->ww[end][k] = r->ww;
+}
+
+/* Responses of the bodies: a side has none. */
+static inline void load_responses(const struct contact_pass *p, bool spin, const uint32_t *a, const uint32_t *b,
+                                  struct lanes *l)
+{
+  static const struct response none = {0};
+  for (int k = 0; k < l->n; k++) {
+    const struct response *ra = &p->response[a[k]], *rb = l->sides ? &none : &p->response[b[k]];
+    load_response(ra, rb, l, k);
+    if (!spin) continue;
+    load_spin_response(ra, l, 0, k);
+    load_spin_response(rb, l, 1, k);
+  }
+}
+
+/* Loads the near entries of a block; `spin`: with what torques need, `responds`: with the responses. */
+static inline void load(const struct contact_pass *p, size_t block, bool spin, bool responds, struct lanes *restrict l)
 {
   const struct contact_table *t = p->table;
   const size_t first = table_first(block);
+  const double *restrict ra = t->radius[0] + first, *restrict rb = t->radius[1] + first;
+  const double *restrict strength = t->strength + first, *restrict damper = t->damper + first;
+  const uint32_t *restrict all_a = t->a + first, *restrict all_b = t->b + first;
+  const struct disc_motions at = p->at;
+  uint32_t a[BLOCK], b[BLOCK];
   l->count = t->near_count[block];
   l->n = whole_vectors(l->count);
   l->sides = table_is_of_sides(t, block);
   l->pairs.count = l->n;
+  memcpy(l->entry, t->near + first, (size_t)l->count);
+  memset(l->entry + l->count, l->entry[0], (size_t)(l->n - l->count));
   for (int k = 0; k < l->n; k++) {
-    const size_t e = first + t->near[first + (size_t)(k < l->count ? k : 0)];
-    l->entry[k] = e;
-    l->pairs.radius[0][k] = t->radius[0][e];
-    l->pairs.radius[1][k] = t->radius[1][e];
-    l->strength[k] = t->strength[e];
-    l->damper[k] = t->damper[e];
-    if (l->sides) {
-      place_side(p->scene, p->at.x, p->at.y, t->a[e], t->b[e], &l->pairs, k);
-      load_motion_to_side(p, l, k, t->a[e], t->b[e]);
-    } else {
-      place_body(p->at.x, p->at.y, t->a[e], t->b[e], &l->pairs, k);
-      load_motion(p, l, k, t->a[e], t->b[e]);
-    }
-    if (!spin) continue;
-    load_spin(p, l, k, 0, t->a[e]);
-    load_spin(p, l, k, 1, t->b[e]);
+    const uint8_t e = l->entry[k];
+    a[k] = all_a[e];
+    b[k] = all_b[e];
+    l->pairs.radius[0][k] = ra[e];
+    l->pairs.radius[1][k] = rb[e];
+    l->strength[k] = strength[e];
+    l->damper[k] = damper[e];
   }
+  for (int k = 0; l->sides && k < l->n; k++) {
+    place_side(p->scene, at.x, at.y, a[k], b[k], &l->pairs, k);
+    load_motion_to_side(p, l, k, a[k], b[k]);
+  }
+  for (int k = 0; !l->sides && k < l->n; k++) {
+    place_body(at.x, at.y, a[k], b[k], &l->pairs, k);
+    load_motion(&at, l, k, a[k], b[k]);
+  }
+  for (int k = 0; spin && k < l->n; k++) {
+    l->omega[0][k] = at.omega[a[k]];
+    l->omega[1][k] = l->sides ? 0 : at.omega[b[k]];
+  }
+  if (responds) load_responses(p, spin, a, b, l);
 }
 
-/* Overlaps and normal kinematics. Areas by cells replace those of lenses. */
-static inline void find_kinematics(const struct contact_pass *p, bool spin, bool with_area, struct lanes *l)
+/* Overlaps and approach speeds. Areas by cells replace those of lenses. */
+static inline void find_overlaps(const struct contact_pass *p, size_t block, bool spin, bool with_area, struct lanes *l)
 {
   struct body_overlaps *o = &l->overlaps;
   const int n = l->n;
@@ -191,28 +223,35 @@ static inline void find_kinematics(const struct contact_pass *p, bool spin, bool
     place_nearest_images(p->scene, &l->pairs);
     p->kind->overlaps(&l->pairs, o);
   }
+  if (spin && p->kind->round) memset(o->offset, 0, sizeof o->offset);
 #pragma omp simd
   for (int k = 0; k < n; k++) {
-    const double nx = o->nx[k], ny = o->ny[k];
-    const double acceleration = nx * l->ax[k] + ny * l->ay[k];
-    l->approach[k] = nx * l->vx[k] + ny * l->vy[k];
-    l->mean[k] = l->approach[k] + 0.5 * p->h * acceleration;
-    l->compliance[k] = nx * nx * l->xx[k] + 2 * nx * ny * l->xy[k] + ny * ny * l->yy[k];
+    const double turn = spin ? o->offset[1][k] * l->omega[1][k] - o->offset[0][k] * l->omega[0][k] : 0;
+    l->approach[k] = o->nx[k] * l->vx[k] + o->ny[k] * l->vy[k] + turn;
     l->touch[k] = o->depth[k];
   }
-  for (int k = 0; p->has_cells && !l->sides && k < n; k++) l->touch[k] = o->area[k] = p->table->cells_area[l->entry[k]];
-  if (!spin || p->kind->round) {
-    if (spin) memset(o->offset, 0, sizeof o->offset);
-    return;
-  }
+  for (int k = 0; p->has_cells && !l->sides && k < n; k++)
+    l->touch[k] = o->area[k] = p->table->cells_area[table_first(block) + l->entry[k]];
+}
+
+/* c_n of body `end` beyond the response of its translation. */
+static inline double turning_compliance(const struct lanes *l, int end, int k)
+{
+  const double nx = l->overlaps.nx[k], ny = l->overlaps.ny[k], offset = l->overlaps.offset[end][k];
+  return offset * (offset * l->ww[end][k] - 2 * (nx * l->xw[end][k] + ny * l->yw[end][k]));
+}
+
+/* Compliances, and mean approach speeds over the sub-step without impulses. */
+static inline void find_compliances(const struct contact_pass *p, bool spin, struct lanes *l)
+{
+  const struct body_overlaps *o = &l->overlaps;
 #pragma omp simd
-  for (int k = 0; k < n; k++) {
-    const double nx = o->nx[k], ny = o->ny[k], oa = o->offset[0][k], ob = o->offset[1][k];
-    l->approach[k] += ob * l->omega[1][k] - oa * l->omega[0][k];
-    l->mean[k] +=
-        ob * l->omega[1][k] - oa * l->omega[0][k] + 0.5 * p->h * (ob * l->domega[1][k] - oa * l->domega[0][k]);
-    l->compliance[k] -= oa * (2 * (nx * l->xw[0][k] + ny * l->yw[0][k]) - oa * l->ww[0][k]) +
-                        ob * (2 * (nx * l->xw[1][k] + ny * l->yw[1][k]) - ob * l->ww[1][k]);
+  for (int k = 0; k < l->n; k++) {
+    const double nx = o->nx[k], ny = o->ny[k];
+    const double turn = spin ? o->offset[1][k] * l->domega[1][k] - o->offset[0][k] * l->domega[0][k] : 0;
+    l->mean[k] = l->approach[k] + 0.5 * p->h * (nx * l->ax[k] + ny * l->ay[k] + turn);
+    l->compliance[k] = nx * nx * l->xx[k] + 2 * nx * ny * l->xy[k] + ny * ny * l->yy[k] +
+                       (spin ? turning_compliance(l, 0, k) + turning_compliance(l, 1, k) : 0);
   }
 }
 
@@ -235,7 +274,7 @@ static inline void find_rates(const struct contact_pass *p, bool spin, enum cont
                               struct contact_rates *max)
 {
   const bool by_rate = p->law->by_rate;
-  const double ratio = p->law->tangential_ratio;
+  const double ratio = p->law->tangential_ratio, rolling = p->law->rolling_friction;
   double spring = 0, damper = 0;
 #pragma omp simd reduction(max : spring, damper)
   for (int k = 0; k < l->n; k++) {
@@ -243,7 +282,10 @@ static inline void find_rates(const struct contact_pass *p, bool spin, enum cont
     const double stiffness = spring_max_stiffness(law, l->strength[k], depth, reduced_radius(l, k));
     const double eta = by_rate ? l->damper[k] * sqrt(stiffness) : l->damper[k];
     const double shear = spin ? ratio * shear_compliance(l, k) : 0;
-    const double of_spring = stiffness * max_of(l->compliance[k], shear), of_damper = eta * l->compliance[k];
+    const double turn =
+        spin ? 3 * rolling * rolling * reduced_radius(l, k) * reduced_radius(l, k) * (l->ww[0][k] + l->ww[1][k]) : 0;
+    const double of_spring = stiffness * max_of(l->compliance[k], max_of(shear, turn));
+    const double of_damper = eta * l->compliance[k];
     spring = of_spring > spring ? of_spring : spring;
     damper = of_damper > damper ? of_damper : damper;
   }
@@ -257,8 +299,9 @@ static void KERNEL(rates)(const struct contact_pass *p, size_t block, struct con
   struct lanes l;
   const bool spin = p->table->has_spin;
   if (p->table->near_count[block] == 0) return;
-  load(p, block, spin, &l);
-  find_kinematics(p, spin, false, &l);
+  load(p, block, spin, true, &l);
+  find_overlaps(p, block, spin, false, &l);
+  find_compliances(p, spin, &l);
   switch (p->law->spring) {
   case SPRING_OVERLAP:
     find_rates(p, spin, SPRING_OVERLAP, &l, max);
@@ -285,14 +328,26 @@ static inline void find_springs(const struct contact_pass *p, enum contact_sprin
   }
 }
 
-/* Normal impulses; updates the states. */
+/* Normal impulses. */
 static void find_normal(const struct contact_pass *p, struct lanes *l)
 {
+  const double duration = p->duration;
+#pragma omp simd
+  for (int k = 0; k < l->n; k++) {
+    const double force = max_of(0, l->force[k] + l->eta[k] * l->approach[k]);
+    l->normal[k] = l->touch[k] > 0 ? duration * force : 0;
+  }
+}
+
+/* Limits the normal impulses by the stored energies; updates these states. */
+static void limit_normal(const struct contact_pass *p, size_t block, struct lanes *l)
+{
   const struct contact_table *t = p->table;
+  const size_t first = table_first(block);
   const double duration = p->duration;
   double stored[BLOCK], impulse[BLOCK], spring_impulse[BLOCK], before[BLOCK];
   for (int k = 0; k < l->n; k++) {
-    const size_t e = l->entry[k];
+    const size_t e = first + l->entry[k];
     stored[k] = t->stored[e];
     impulse[k] = t->impulse[e];
     spring_impulse[k] = t->spring_impulse[e];
@@ -300,22 +355,19 @@ static void find_normal(const struct contact_pass *p, struct lanes *l)
   }
 #pragma omp simd
   for (int k = 0; k < l->n; k++) {
-    const double approach = l->approach[k], eta = l->eta[k];
-    const double left = state_stored(stored[k], impulse[k], spring_impulse[k], before[k], approach);
-    const double max = state_max_impulse(left, l->mean[k], l->compliance[k], duration * eta);
-    const double wanted = duration * max_of(0, l->force[k] + eta * approach), spring = duration * l->force[k];
+    const double left = state_stored(stored[k], impulse[k], spring_impulse[k], before[k], l->approach[k]);
+    const double max = state_max_impulse(left, l->mean[k], l->compliance[k], duration * l->eta[k]);
     const bool touches = l->touch[k] > 0;
     stored[k] = touches ? left : 0;
-    l->normal[k] = touches ? min_of(wanted, max) : 0;
-    spring_impulse[k] = touches ? min_of(spring, max) : 0;
+    l->normal[k] = min_of(l->normal[k], max);
+    spring_impulse[k] = touches ? min_of(duration * l->force[k], max) : 0;
   }
   for (int k = 0; k < l->count; k++) {
-    const size_t e = l->entry[k];
+    const size_t e = first + l->entry[k];
     t->stored[e] = stored[k];
     t->impulse[e] = l->normal[k];
     t->spring_impulse[e] = spring_impulse[k];
     t->approach_speed[e] = l->approach[k];
-    t->live[e] = stored[k] > 0 || l->normal[k] > 0;
   }
 }
 
@@ -334,38 +386,42 @@ static inline double slide(struct slider *spring, double stiffness, double eta, 
 }
 
 /* Tangential impulses and rolling moments, and the wrenches on both bodies. */
-static void find_friction(const struct contact_pass *p, const struct lanes *l)
+static inline void find_friction(const struct contact_pass *p, size_t block, bool limited, const struct lanes *l)
 {
   const struct contact_table *t = p->table;
   const struct body_overlaps *o = &l->overlaps;
+  const size_t first = table_first(block);
   const double ratio = p->law->tangential_ratio, root = sqrt(ratio), h = p->h, duration = p->duration, moved = p->moved;
-  const double rolling = p->law->rolling_friction, eta_0 = p->law->damping;
   double force[BLOCK], force_stiffness[BLOCK], moment[BLOCK], moment_stiffness[BLOCK], friction[BLOCK], arm[BLOCK];
-  double fx[BLOCK], fy[BLOCK], ta[BLOCK], tb[BLOCK];
+  double rolling_damper[BLOCK], fx[BLOCK], fy[BLOCK], ta[BLOCK], tb[BLOCK];
   for (int k = 0; k < l->n; k++) {
-    const size_t e = l->entry[k];
+    const size_t e = first + l->entry[k];
     force[k] = t->shear[e];
     force_stiffness[k] = t->shear_stiffness[e];
     moment[k] = t->moment[e];
     moment_stiffness[k] = t->moment_stiffness[e];
     friction[k] = t->friction[e];
     arm[k] = t->max_moment[e];
+    rolling_damper[k] = t->rolling_damper[e];
   }
 #pragma omp simd
   for (int k = 0; k < l->n; k++) {
     const double nx = o->nx[k], ny = o->ny[k], aa = o->arm[0][k], ab = o->arm[1][k], j = l->normal[k];
-    const double ct = shear_compliance(l, k), cr = l->ww[0][k] + l->ww[1][k];
     const double slip = nx * l->vy[k] - ny * l->vx[k] + aa * l->omega[0][k] + ab * l->omega[1][k];
-    const double roll = l->omega[0][k] - l->omega[1][k], normal = j / duration;
+    const double roll = l->omega[0][k] - l->omega[1][k], normal = j / duration, kn = l->stiffness[k];
+    const double ct = limited ? shear_compliance(l, k) : 0, cr = limited ? l->ww[0][k] + l->ww[1][k] : 0;
     const bool acts = j > 0;
     struct slider shear = {force[k], force_stiffness[k]}, turn = {moment[k], moment_stiffness[k]};
-    const double kt = min_of(ratio * l->stiffness[k], 1 / (ct * h * h));
-    const double et = min_of(root * l->eta[k], 1 / (2 * ct * h));
-    const double kr = min_of(3 * arm[k] * arm[k] * l->stiffness[k], 1 / (cr * h * h));
-    const double er = min_of(2 * eta_0 * sqrt(kr / cr), 1 / (2 * cr * h));
+    double kt = ratio * kn, et = root * l->eta[k], kr = 3 * arm[k] * arm[k] * kn, er = rolling_damper[k] * sqrt(kn);
+    if (limited) {
+      kt = min_of(kt, 1 / (ct * h * h));
+      et = min_of(et, 1 / (2 * ct * h));
+      kr = min_of(kr, 1 / (cr * h * h));
+      er = min_of(er, 1 / (2 * cr * h));
+    }
     const double along = slide(&shear, kt, et, slip, moved, friction[k] * normal);
     const double torque = slide(&turn, kr, er, roll, moved, arm[k] * normal);
-    const double jt = acts ? duration * along : 0, jr = acts && rolling > 0 ? duration * torque : 0;
+    const double jt = acts ? duration * along : 0, jr = acts ? duration * torque : 0;
     force[k] = acts ? shear.force : 0;
     force_stiffness[k] = acts ? shear.stiffness : 0;
     moment[k] = acts ? turn.force : 0;
@@ -376,7 +432,7 @@ static void find_friction(const struct contact_pass *p, const struct lanes *l)
     tb[k] = jr - o->offset[1][k] * j - ab * jt;
   }
   for (int k = 0; k < l->count; k++) {
-    const size_t e = l->entry[k];
+    const size_t e = first + l->entry[k];
     t->shear[e] = force[k];
     t->shear_stiffness[e] = force_stiffness[k];
     t->moment[e] = moment[k];
@@ -388,11 +444,24 @@ static void find_friction(const struct contact_pass *p, const struct lanes *l)
   }
 }
 
-static void store_normal(const struct contact_pass *p, const struct lanes *l)
+static inline void store_normal(const struct contact_pass *p, size_t block, struct lanes *l)
 {
+  double *restrict fx = p->table->fx + table_first(block), *restrict fy = p->table->fy + table_first(block);
   for (int k = 0; k < l->count; k++) {
-    p->table->fx[l->entry[k]] = l->normal[k] * l->overlaps.nx[k];
-    p->table->fy[l->entry[k]] = l->normal[k] * l->overlaps.ny[k];
+    const uint8_t e = l->entry[k];
+    fx[e] = l->normal[k] * l->overlaps.nx[k];
+    fy[e] = l->normal[k] * l->overlaps.ny[k];
+  }
+}
+
+/* Marks the entries with a state to be kept. */
+static void note_live(const struct contact_pass *p, size_t block, bool limited, const struct lanes *l)
+{
+  const struct contact_table *t = p->table;
+  const size_t first = table_first(block);
+  for (int k = 0; k < l->count; k++) {
+    const size_t e = first + l->entry[k];
+    t->live[e] = l->normal[k] > 0 || (limited && t->stored[e] > 0);
   }
 }
 
@@ -407,34 +476,50 @@ static double largest_overlap(const struct lanes *l)
   return largest;
 }
 
-static inline void find_impulses(const struct contact_pass *p, size_t block, bool spin, enum contact_spring_law law,
-                                 double *max_overlap)
+static inline void find_impulses(const struct contact_pass *p, size_t block, bool spin, bool limited,
+                                 enum contact_spring_law law, double *max_overlap)
 {
   struct lanes l;
-  load(p, block, spin, &l);
-  find_kinematics(p, spin, law == SPRING_OVERLAP, &l);
+  load(p, block, spin, limited, &l);
+  find_overlaps(p, block, spin, law == SPRING_OVERLAP, &l);
   find_springs(p, law, &l);
   find_normal(p, &l);
+  if (limited) {
+    find_compliances(p, spin, &l);
+    limit_normal(p, block, &l);
+  }
   if (spin)
-    find_friction(p, &l);
+    find_friction(p, block, limited, &l);
   else
-    store_normal(p, &l);
+    store_normal(p, block, &l);
+  if (spin || limited) note_live(p, block, limited, &l);
   *max_overlap = max_of(*max_overlap, largest_overlap(&l));
+}
+
+static inline void find_impulses_by(const struct contact_pass *p, size_t block, enum contact_spring_law law,
+                                    double *max_overlap)
+{
+  const struct contact_table *t = p->table;
+  if (t->has_spin)
+    t->limited ? find_impulses(p, block, true, true, law, max_overlap)
+               : find_impulses(p, block, true, false, law, max_overlap);
+  else
+    t->limited ? find_impulses(p, block, false, true, law, max_overlap)
+               : find_impulses(p, block, false, false, law, max_overlap);
 }
 
 static void KERNEL(impulses)(const struct contact_pass *p, size_t block, double *max_overlap)
 {
-  const bool spin = p->table->has_spin;
   if (p->table->near_count[block] == 0) return;
   switch (p->law->spring) {
   case SPRING_OVERLAP:
-    find_impulses(p, block, spin, SPRING_OVERLAP, max_overlap);
+    find_impulses_by(p, block, SPRING_OVERLAP, max_overlap);
     break;
   case SPRING_HERTZ:
-    find_impulses(p, block, spin, SPRING_HERTZ, max_overlap);
+    find_impulses_by(p, block, SPRING_HERTZ, max_overlap);
     break;
   case SPRING_LINEAR:
-    find_impulses(p, block, spin, SPRING_LINEAR, max_overlap);
+    find_impulses_by(p, block, SPRING_LINEAR, max_overlap);
     break;
   }
 }

@@ -1,7 +1,8 @@
 /* State of a contact between two sub-steps: the energy E stored in its normal spring, and the springs of friction.
  *
- * A spring whose force is a smooth function of the overlap returns its stored energy. A spring whose force jumps, as
- * with area by cells, or with too few sub-steps, might return more. So E is counted and limits the impulse J.
+ * A spring whose force is a smooth function of the overlap returns its stored energy, over sub-steps as many as its
+ * stiffness needs. A spring whose force jumps, as with area by cells, or over too few sub-steps, might return more. There
+ * E is counted and limits the impulse J.
  *
  * Energy. An impulse does the work J v, v the mean of the approach speeds before and after the impulse, other forces
  * included; the damper dissipates D, with S the part of J without damping:

@@ -26,9 +26,11 @@ int substeps_by_lens(const struct scene *scene)
   }
   if (!(min_mass < INFINITY)) return 1;
   const double stiffness = contact_spring_at(&law, (const double[2]){radius, INFINITY}, 1).stiffness;
-  const double compliance = 2 / min_mass, slip = 3 * law.tangential_ratio; /* c_t = 3 c_n for discs */
+  const double compliance = 2 / min_mass;
+  const double slip = law.friction > 0 ? 3 * law.tangential_ratio : 0; /* c_t = 3 c_n for discs */
+  const double turn = 6 * law.rolling_friction * law.rolling_friction; /* k_r c_r over k_n c_n, at most */
   const struct contact_rates rates = {.any = true,
-                                      .spring = stiffness * compliance * (law.friction > 0 ? fmax(1, slip) : 1),
+                                      .spring = stiffness * compliance * fmax(1, fmax(slip, turn)),
                                       .damper = contact_damping(&law, compliance, stiffness) * compliance};
   return substeps_needed(scene, &rates);
 }

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { DOUBLE_ARRAYS = 19 };
+enum { DOUBLE_ARRAYS = 20 };
 
 bool table_create(struct contact_table *t, size_t discs, struct status *status)
 {
@@ -41,6 +41,7 @@ static void carve(struct contact_table *t, size_t entries)
                                            &t->damper,
                                            &t->friction,
                                            &t->max_moment,
+                                           &t->rolling_damper,
                                            &t->stored,
                                            &t->impulse,
                                            &t->spring_impulse,
@@ -189,6 +190,11 @@ static double inverse_mass(const struct discs *d, uint32_t i)
   return d->motion[i] == DISC_FREE ? 1 / d->mass[i] : 0;
 }
 
+static double inverse_inertia(const struct discs *d, uint32_t i)
+{
+  return d->motion[i] == DISC_FREE ? 1 / d->inertia[i] : 0;
+}
+
 /* Discs slide and roll on walls; other sides are smooth. */
 static bool is_rough(const struct scene *scene, uint32_t b)
 {
@@ -209,6 +215,8 @@ void table_fill(struct contact_table *t, const struct scene *scene, const struct
     t->damper[e] = contact_damping(law, inverse_mass(d, a) + (side ? 0 : inverse_mass(d, b)), 1);
     t->friction[e] = is_rough(scene, b) ? law->friction : 0;
     t->max_moment[e] = is_rough(scene, b) ? law->rolling_friction * reduced : 0;
+    t->rolling_damper[e] =
+        2 * law->damping * t->max_moment[e] * sqrt(3 / (inverse_inertia(d, a) + (side ? 0 : inverse_inertia(d, b))));
   }
 }
 
