@@ -43,6 +43,16 @@ static inline double min_of(double a, double b)
   return a < b ? a : b;
 }
 
+/* The largest of n values and 0, n in whole vectors. */
+static inline double largest_of(const double *v, int n)
+{
+  double top[VECTOR] = {0}, largest = 0;
+  for (int k = 0; k < n; k += VECTOR)
+    for (int j = 0; j < VECTOR; j++) top[j] = max_of(top[j], v[k + j]);
+  for (int j = 0; j < VECTOR; j++) largest = max_of(largest, top[j]);
+  return largest;
+}
+
 /* Velocity of a wall along itself; 0 for other sides. */
 static double wall_velocity(const struct scene *scene, enum side_name side, int axis)
 {
@@ -270,28 +280,47 @@ static inline double reduced_radius(const struct lanes *l, int k)
   return 1 / (1 / l->pairs.radius[0][k] + 1 / l->pairs.radius[1][k]);
 }
 
-static inline void find_rates(const struct contact_pass *p, bool spin, enum contact_spring_law law, struct lanes *l,
-                              struct contact_rates *max)
+/* Damping coefficients from stiffnesses. */
+static void find_dampers(const struct contact_pass *p, const double *restrict stiffness, struct lanes *l)
 {
-  const bool by_rate = p->law->by_rate;
+  if (!p->law->by_rate) {
+    memcpy(l->eta, l->damper, (size_t)l->n * sizeof *l->eta);
+    return;
+  }
+#pragma omp simd
+  for (int k = 0; k < l->n; k++) l->eta[k] = l->damper[k] * sqrt(stiffness[k]);
+}
+
+/* The largest compliance of a contact per normal stiffness. */
+static inline void find_softest(const struct contact_pass *p, const struct lanes *l, double *restrict compliance)
+{
   const double ratio = p->law->tangential_ratio, rolling = p->law->rolling_friction;
-  double spring = 0, damper = 0;
-#pragma omp simd reduction(max : spring, damper)
+#pragma omp simd
+  for (int k = 0; k < l->n; k++) {
+    const double arm = rolling * reduced_radius(l, k), turn = 3 * arm * arm * (l->ww[0][k] + l->ww[1][k]);
+    compliance[k] = max_of(l->compliance[k], max_of(ratio * shear_compliance(l, k), turn));
+  }
+}
+
+static inline __attribute__((always_inline)) void find_rates(const struct contact_pass *p, bool spin,
+                                                             enum contact_spring_law law, struct lanes *l,
+                                                             struct contact_rates *max)
+{
+  double softest[BLOCK], stiffness[BLOCK], spring[BLOCK], damper[BLOCK];
+  memcpy(softest, l->compliance, sizeof softest);
+  if (spin) find_softest(p, l, softest);
+#pragma omp simd
   for (int k = 0; k < l->n; k++) {
     const double depth = max_of(0, l->overlaps.depth[k]) + max_of(0, l->approach[k]);
-    const double stiffness = spring_max_stiffness(law, l->strength[k], depth, reduced_radius(l, k));
-    const double eta = by_rate ? l->damper[k] * sqrt(stiffness) : l->damper[k];
-    const double shear = spin ? ratio * shear_compliance(l, k) : 0;
-    const double turn =
-        spin ? 3 * rolling * rolling * reduced_radius(l, k) * reduced_radius(l, k) * (l->ww[0][k] + l->ww[1][k]) : 0;
-    const double of_spring = stiffness * max_of(l->compliance[k], max_of(shear, turn));
-    const double of_damper = eta * l->compliance[k];
-    spring = of_spring > spring ? of_spring : spring;
-    damper = of_damper > damper ? of_damper : damper;
+    stiffness[k] = spring_max_stiffness(law, l->strength[k], depth, reduced_radius(l, k));
+    spring[k] = stiffness[k] * softest[k];
   }
+  find_dampers(p, stiffness, l);
+#pragma omp simd
+  for (int k = 0; k < l->n; k++) damper[k] = l->eta[k] * l->compliance[k];
   max->any = true;
-  if (spring > max->spring) max->spring = spring;
-  if (damper > max->damper) max->damper = damper;
+  max->spring = max_of(max->spring, largest_of(spring, l->n));
+  max->damper = max_of(max->damper, largest_of(damper, l->n));
 }
 
 static void KERNEL(rates)(const struct contact_pass *p, size_t block, struct contact_rates *max)
@@ -315,17 +344,16 @@ static void KERNEL(rates)(const struct contact_pass *p, size_t block, struct con
   }
 }
 
-static inline void find_springs(const struct contact_pass *p, enum contact_spring_law law, struct lanes *l)
+static inline __attribute__((always_inline)) void find_springs(const struct contact_pass *p,
+                                                               enum contact_spring_law law, struct lanes *l)
 {
-  const bool by_rate = p->law->by_rate;
 #pragma omp simd
   for (int k = 0; k < l->n; k++) {
     const double depth = max_of(0, l->overlaps.depth[k]);
-    const double stiffness = spring_stiffness(law, l->strength[k], depth, l->overlaps.chord[k]);
     l->force[k] = spring_force(law, l->strength[k], depth, l->overlaps.area[k]);
-    l->stiffness[k] = stiffness;
-    l->eta[k] = by_rate ? l->damper[k] * sqrt(stiffness) : l->damper[k];
+    l->stiffness[k] = spring_stiffness(law, l->strength[k], depth, l->overlaps.chord[k]);
   }
+  find_dampers(p, l->stiffness, l);
 }
 
 /* Normal impulses. */
@@ -386,7 +414,8 @@ static inline double slide(struct slider *spring, double stiffness, double eta, 
 }
 
 /* Tangential impulses and rolling moments, and the wrenches on both bodies. */
-static inline void find_friction(const struct contact_pass *p, size_t block, bool limited, const struct lanes *l)
+static inline __attribute__((always_inline)) void find_friction(const struct contact_pass *p, size_t block,
+                                                                bool limited, const struct lanes *l)
 {
   const struct contact_table *t = p->table;
   const struct body_overlaps *o = &l->overlaps;
@@ -465,19 +494,18 @@ static void note_live(const struct contact_pass *p, size_t block, bool limited, 
   }
 }
 
+/* The largest overlap over the smaller radius. */
 static double largest_overlap(const struct lanes *l)
 {
-  double largest = 0;
-#pragma omp simd reduction(max : largest)
-  for (int k = 0; k < l->n; k++) {
-    const double part = l->overlaps.depth[k] / min_of(l->pairs.radius[0][k], l->pairs.radius[1][k]);
-    largest = part > largest ? part : largest;
-  }
-  return largest;
+  double part[BLOCK];
+#pragma omp simd
+  for (int k = 0; k < l->n; k++) part[k] = l->overlaps.depth[k] / min_of(l->pairs.radius[0][k], l->pairs.radius[1][k]);
+  return largest_of(part, l->n);
 }
 
-static inline void find_impulses(const struct contact_pass *p, size_t block, bool spin, bool limited,
-                                 enum contact_spring_law law, double *max_overlap)
+static inline __attribute__((always_inline)) void find_impulses(const struct contact_pass *p, size_t block, bool spin,
+                                                                bool limited, enum contact_spring_law law,
+                                                                double *max_overlap)
 {
   struct lanes l;
   load(p, block, spin, limited, &l);
@@ -496,8 +524,8 @@ static inline void find_impulses(const struct contact_pass *p, size_t block, boo
   *max_overlap = max_of(*max_overlap, largest_overlap(&l));
 }
 
-static inline void find_impulses_by(const struct contact_pass *p, size_t block, enum contact_spring_law law,
-                                    double *max_overlap)
+static inline __attribute__((always_inline)) void find_impulses_by(const struct contact_pass *p, size_t block,
+                                                                   enum contact_spring_law law, double *max_overlap)
 {
   const struct contact_table *t = p->table;
   if (t->has_spin)
