@@ -78,7 +78,7 @@ static void check_side_velocity(struct draft *draft, enum side_name s)
   const struct side_kind *kind = side_kind_of(side->type);
   if (kind->velocity == VELOCITY_ALONG && normal != 0)
     draft_refuse(draft, keys->velocity, "a velocity along the wall, with no component in %c", axis);
-  if (kind->velocity == VELOCITY_INTO && !(side_is_high(s) ? normal < 0 : normal > 0))
+  if (kind->velocity == VELOCITY_INTO && !draft->scene.fluid.none && !(side_is_high(s) ? normal < 0 : normal > 0))
     draft_refuse(draft, keys->velocity, "a velocity into the box, with a component %s 0 in %c",
                  side_is_high(s) ? "<" : ">", axis);
   if (given && kind->velocity == VELOCITY_NONE) draft_refuse(draft, keys->velocity, "no velocity on %s", kind->name);

@@ -61,6 +61,6 @@ void case_units_check(struct draft *draft)
                  draft->scene.fluid.none ? "" : ", or units.viscosity");
   if (!dt && viscosity && draft->scene.fluid.none)
     draft_refuse(draft, "units.viscosity", "units.dt in its place: fluid: none has no viscosity from which dt follows");
-  if (!dt && viscosity && step_is_open(draft))
+  else if (!dt && viscosity && step_is_open(draft))
     draft_refuse(draft, "fluid.viscosity", "a viscosity > 0 in m^2/s, from which and from units.viscosity dt follows");
 }
