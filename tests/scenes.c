@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static void use_mrt(struct scene *scene, double q)
 {
@@ -63,6 +64,13 @@ struct scene scene_square_array(double radius, double solid_fraction, double vis
   scene.fluid.force[0] = force;
   scene_add_disc(&scene, size * sqrt(solid_fraction / M_PI), 1, size / 2.0, size / 2.0)->motion = DISC_FIXED;
   return scene;
+}
+
+void scene_dry(struct scene *scene)
+{
+  memset(&scene->fluid, 0, sizeof scene->fluid);
+  scene->fluid.none = true;
+  scene->contact.search = SEARCH_LINKED_CELL;
 }
 
 struct scene scene_crowd(int nx, int ny, double radius, double spacing, double jitter)

@@ -24,6 +24,9 @@ struct disc_spec *scene_add_disc(struct scene *scene, double radius, double dens
 /* A closed box full of discs on a jittered grid, settling as in the paper's Fig. 12: nu 0.05, density 1.01. */
 struct scene scene_crowd(int nx, int ny, double radius, double spacing, double jitter);
 
+/* Removes the fluid: dry discs, searched in linked cells. */
+void scene_dry(struct scene *scene);
+
 /* One fixed disc in a periodic square cell, driven by a body force: the square array of cylinders. The solid
  * fraction is exact, the radius approximate. */
 struct scene scene_square_array(double radius, double solid_fraction, double viscosity, double force);

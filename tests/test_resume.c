@@ -99,6 +99,15 @@ static struct scene periodic_pair(double density)
   return scene;
 }
 
+Test(state, of_dry_discs_is_whole)
+{
+  struct scene scene = scene_crowd(150, 130, 7, 15, 0.4);
+  scene_dry(&scene);
+  scene.particles.gravity[1] = -5e-4;
+  scene.contact.stiffness = 30;
+  expect_same_end("dry", &scene, 400, 41);
+}
+
 Test(state, of_light_discs_is_whole)
 {
   const struct scene scene = periodic_pair(0.1);
