@@ -54,9 +54,9 @@ struct delbm_simulation;
 /* "0.1.0", of the library in use. */
 DELBM_API const char *delbm_version(void);
 
-/* Opens a simulation at step 0: fluid at rest, or none with `fluid: none`, discs as in the case. *simulation is NULL on failure: DELBM_IO for a
- * file that cannot be read, DELBM_INVALID for an invalid or too large case, DELBM_USAGE for a setting that is not
- * key=value, DELBM_FAILED for want of memory.
+/* Opens a simulation at step 0: fluid at rest, or none with `fluid: none`, discs as in the case. *simulation is NULL on
+ * failure: DELBM_IO for a file that cannot be read, DELBM_INVALID for an invalid or too large case, DELBM_USAGE for a
+ * setting that is not key=value, DELBM_FAILED for want of memory.
  *
  * `settings` are `count` texts "dotted.key=value" that replace values of the case as --set does; `delbm run
  * --help-keys` has all keys. Keys of the run's length and output are ignored and may be missing. */
@@ -82,8 +82,8 @@ DELBM_API int64_t delbm_time(const struct delbm_simulation *simulation);
 DELBM_API int delbm_size(const struct delbm_simulation *simulation, int axis);
 
 /* State of a disc. With `fluid: none` a velocity is that of half a contact sub-step before the position (without
- * contact: half a step), at step 0 that of the position. Forces act in the last step: `force` and `torque` from the fluid, the contact forces from discs
- * and walls. */
+ * contact: half a step), at step 0 that of the position. Forces act in the last step: `force` and `torque` from the
+ * fluid, the contact forces from discs and walls. */
 struct delbm_disc_state {
   double position[2], velocity[2];
   double angle, spin;
@@ -133,8 +133,7 @@ DELBM_API enum delbm_code delbm_read_field(struct delbm_simulation *simulation, 
 
 /* Sets the fluid of every cell to equilibrium at this density and velocity (cells/step), arrays in the order of
  * delbm_read_field. Densities must be above 0, speeds at most 0.3, and there must be fluid: otherwise DELBM_USAGE. The
- * viscous stress
- * develops in the first few steps. In a cell of discs the velocity is (1 - B) times `velocity` plus B times the
+ * viscous stress develops in the first few steps. In a cell of discs the velocity is (1 - B) times `velocity` plus B times the
  * discs' velocity, with B the weight of the occupation fraction, 1 or nearly 1 inside a disc: the fluid there moves
  * with the disc. */
 DELBM_API enum delbm_code delbm_write_fluid(struct delbm_simulation *simulation, const double *density,

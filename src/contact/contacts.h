@@ -48,9 +48,9 @@ bool contacts_store(struct contacts *contacts, size_t discs, struct store *store
 /* To be called when the caller has placed discs. */
 void contacts_placed(struct contacts *contacts);
 
-/* `occupation`: NULL with linked cells and area by lens. Sets contact_fx, contact_fy and contact_torque of the discs; advances the positions in `at` by the sub-steps.
- * Called by all threads of a parallel region or outside of one. Fails when memory runs out or more than 10^6
- * sub-steps are needed. */
+/* Sets contact_fx, contact_fy and contact_torque of the discs; advances the positions in `at` by the sub-steps.
+ * `occupation`: NULL with linked cells and area by lens. Called by all threads of a parallel region or outside of one.
+ * Fails when memory runs out or more than 10^6 sub-steps are needed. */
 bool stage_contact(struct contacts *contacts, const struct occupation *occupation, const struct exchange *exchange,
                    struct discs *discs, struct team *team);
 

@@ -47,8 +47,8 @@ void exchange_destroy(struct exchange *exchange);
 /* Saves or restores the state between two steps, for `discs` discs; the sums are recomputed from the fluid. */
 bool exchange_store(struct exchange *exchange, size_t discs, struct store *store, struct status *status);
 
-/* With fluid: computes the sums and solves, for all discs; called by all threads of a parallel region or outside of one.
- * `constants`: of the coming sweep. Fails when A is not positive definite: a disc too light and too small for its
+/* With fluid: computes the sums and solves, for all discs; called by all threads of a parallel region or outside of
+ * one. `constants`: of the coming sweep. Fails when A is not positive definite: a disc too light and too small for its
  * cells, or diverged fluid. */
 bool stage_exchange(struct exchange *exchange, const struct sweep_constants *constants,
                     const struct occupation *occupation, const struct discs *discs, int64_t step, struct team *team);

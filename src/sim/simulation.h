@@ -48,16 +48,17 @@ bool simulation_check(struct simulation *simulation, struct status *status);
 bool simulation_save(struct simulation *simulation, struct store *store, struct status *status);
 bool simulation_restore(struct simulation *simulation, struct store *store, struct status *status);
 
-/* Name of the sweep kernel, or "none", chosen by the processor and the scene; results of two kernels may differ in the last bit. */
+/* Name of the sweep kernel, chosen by the processor and the scene, or "none"; results of two kernels may differ in the
+ * last bit. */
 const char *simulation_kernel(const struct simulation *simulation);
 
 int64_t simulation_step(const struct simulation *simulation);
 const struct scene *simulation_scene(const struct simulation *simulation);
 const struct discs *simulation_discs(const struct simulation *simulation);
 
-/* Changes by the caller between steps: to the arrays of the discs directly, and to the fluid, if there is any, by simulation_set_fluid,
- * which sets all cells to the equilibrium of a density and velocity (arrays as in simulation_fields). After the last
- * change and before the next step, simulation_changed updates all derived state. It fails if memory runs out, or if
+/* Changes by the caller between steps: to the arrays of the discs directly, and to the fluid, if there is any, by
+ * simulation_set_fluid, which sets all cells to the equilibrium of a density and velocity (arrays as in
+ * simulation_fields). After the last change and before the next step, simulation_changed updates all derived state. It fails if memory runs out, or if
  * the simulation has failed before. */
 void simulation_set_fluid(struct simulation *simulation, const double *density, const double *ux, const double *uy);
 bool simulation_changed(struct simulation *simulation, struct status *status);
@@ -81,15 +82,15 @@ bool simulation_sample(struct simulation *simulation, const struct sample_grid *
 struct simulation_report {
   int threads;
   const char *kernel;
-  struct stage_times times; /* STAGE_OUTPUT: 0, measured by the caller */
-  double mass_drift;        /* |mass - initial mass| / initial mass, of the fluid; 0 without fluid */
-  double
-      momentum_drift; /* change of the conserved momentum less the impulse of body forces, over the mass of the fluid,
-                               without fluid of the discs; larger component; NAN where sides, or discs that are not free, exchange momentum */
-  double mean_velocity
-      [2];           /* momentum of the fluid over its mass, cells inside discs included, cells/step; 0 without fluid */
-  double max_mach;   /* largest at the checks for divergence, and at a divergence */
-  char blocking[32]; /* blocking of the sweep in time: off, its depth, or depth x width */
+  struct stage_times times;   /* STAGE_OUTPUT: 0, measured by the caller */
+  double mass_drift;          /* |mass - initial mass| / initial mass, of the fluid; 0 without fluid */
+  double momentum_drift;      /* change of the conserved momentum less the impulse of body forces, over the mass of the
+                               fluid, without fluid of the discs; larger component; NAN where sides, or discs that are
+                               not free, exchange momentum */
+  double mean_velocity[2];    /* momentum of the fluid over its mass, cells inside discs included, cells/step; 0 without
+                               fluid */
+  double max_mach;            /* largest at the checks for divergence, and at a divergence */
+  char blocking[32];          /* blocking of the sweep in time: off, its depth, or depth x width */
   char binding[THREADS_TEXT]; /* of threads to processors */
   int max_substeps;           /* largest number of contact sub-steps of a step so far */
 };
