@@ -20,7 +20,7 @@
 #include <unistd.h>
 
 /* An output at regular steps. */
-struct series {
+struct schedule {
   int64_t every;    /* 0: never */
   int64_t recorded; /* last recorded step; -1 before the first */
 };
@@ -34,7 +34,7 @@ struct recorder {
   int lock;          /* descriptor of the locked folder; -1: not open */
   struct csv *table; /* particles.csv */
   struct fields *fields;
-  struct series rows, frames, snapshots, checkpoints;
+  struct schedule rows, frames, snapshots, checkpoints;
   int next_checkpoint;  /* index of the checkpoint to be written next */
   uint32_t fingerprint; /* of the case */
   double *ux, *uy;      /* fields of a frame; NULL without frames or without fluid */
@@ -43,14 +43,14 @@ struct recorder {
   double seconds;       /* time of output */
 };
 
-static bool series_is_due(const struct series *series, int64_t step, bool last)
+static bool is_due(const struct schedule *schedule, int64_t step, bool last)
 {
-  return series->every > 0 && step != series->recorded && (last || step % series->every == 0);
+  return schedule->every > 0 && step != schedule->recorded && (last || step % schedule->every == 0);
 }
 
-static int64_t series_next(const struct series *series, int64_t step, int64_t end)
+static int64_t next_due(const struct schedule *schedule, int64_t step, int64_t end)
 {
-  int64_t left = series->every > 0 ? series->every - step % series->every : end;
+  int64_t left = schedule->every > 0 ? schedule->every - step % schedule->every : end;
   return left < end - step ? step + left : end;
 }
 
@@ -277,9 +277,9 @@ static int64_t earlier(int64_t a, int64_t b)
 int64_t recorder_next(const struct recorder *recorder, int64_t step)
 {
   int64_t end = recorder->scene->run.steps;
-  const int64_t shown = earlier(series_next(&recorder->rows, step, end), series_next(&recorder->frames, step, end));
-  return earlier(earlier(shown, series_next(&recorder->snapshots, step, end)),
-                 series_next(&recorder->checkpoints, step, end));
+  const int64_t shown = earlier(next_due(&recorder->rows, step, end), next_due(&recorder->frames, step, end));
+  return earlier(earlier(shown, next_due(&recorder->snapshots, step, end)),
+                 next_due(&recorder->checkpoints, step, end));
 }
 
 /* Sets the colour values of the discs; returns the end of the scale (struct picture). The height at step 0 comes
@@ -358,10 +358,10 @@ bool recorder_checkpoint(struct recorder *recorder, struct simulation *simulatio
 static bool record_due(struct recorder *recorder, struct simulation *simulation, bool last, struct status *status)
 {
   int64_t step = simulation_step(simulation);
-  if (step > 0 && series_is_due(&recorder->checkpoints, step, last) && !write_checkpoint(recorder, simulation, status))
+  if (step > 0 && is_due(&recorder->checkpoints, step, last) && !write_checkpoint(recorder, simulation, status))
     return false;
-  bool rows = series_is_due(&recorder->rows, step, last), frame = series_is_due(&recorder->frames, step, last);
-  bool snapshot = series_is_due(&recorder->snapshots, step, last);
+  bool rows = is_due(&recorder->rows, step, last), frame = is_due(&recorder->frames, step, last);
+  bool snapshot = is_due(&recorder->snapshots, step, last);
   if (!rows && !frame && !snapshot && !last) return true;
   if (!file_stays(recorder->lock, recorder->directory, status)) return false;
   /* csv_write checks its rows by itself; a check of all cells costs more than the rows */
