@@ -91,11 +91,11 @@ static struct discs *some_discs(struct some_discs *some)
 
 Test(csv, starts_with_the_header_that_scripts_rely_on)
 {
-  struct csv *csv;
+  struct table *csv;
   size_t length;
   char *path = in_scratch("particles.csv");
-  cr_assert(csv_open(&csv, path, &(struct units){0}, &status), "%s", status.message);
-  cr_assert(csv_close(&csv, &status));
+  cr_assert(table_open(&csv, path, &csv_layout, &(struct units){0}, &status), "%s", status.message);
+  cr_assert(table_close(&csv, &status));
   cr_assert_null(csv);
   cr_assert_str_eq(contents(path, &length),
                    "step,id,x,y,vx,vy,omega,angle,fx,fy,torque,contact_fx,contact_fy,contact_torque\n");
@@ -118,11 +118,11 @@ Test(csv, numbers_read_back_as_they_were)
                             1,
                             M_PI};
   for (int k = 0; k < 12; k++) some.columns[k][1] = awkward[k];
-  struct csv *csv;
+  struct table *csv;
   char *path = in_scratch("particles.csv");
-  cr_assert(csv_open(&csv, path, &(struct units){0}, &status));
+  cr_assert(table_open(&csv, path, &csv_layout, &(struct units){0}, &status));
   cr_assert(csv_write(csv, INT64_MAX, discs, &status), "%s", status.message);
-  cr_assert(csv_close(&csv, &status));
+  cr_assert(table_close(&csv, &status));
   size_t length;
   char *row = strstr(contents(path, &length), "\n9223372036854775807,1,");
   cr_assert_not_null(row);
@@ -159,12 +159,12 @@ Test(csv, every_column_has_one_in_si_with_its_unit_and_scale)
   struct some_discs some;
   struct discs *discs = some_discs(&some);
   for (int k = 0; k < 12; k++) some.columns[k][0] = 10 + k;
-  struct csv *csv;
+  struct table *csv;
   size_t length;
   char *path = in_scratch("particles.csv");
-  cr_assert(csv_open(&csv, path, &units, &status));
+  cr_assert(table_open(&csv, path, &csv_layout, &units, &status));
   cr_assert(csv_write(csv, 7, discs, &status));
-  csv_close(&csv, &status);
+  table_close(&csv, &status);
   char *header = strstr(contents(path, &length), "contact_torque,") + strlen("contact_torque");
   char *row = strchr(header, '\n') + 1;
   for (int k = 0; k < 14; k++) row = strchr(row, ',') + 1;
@@ -181,11 +181,11 @@ Test(csv, every_column_has_one_in_si_with_its_unit_and_scale)
 
 Test(csv, without_a_density_of_the_fluid_has_no_forces_in_si)
 {
-  struct csv *csv;
+  struct table *csv;
   size_t length;
   char *path = in_scratch("particles.csv");
-  cr_assert(csv_open(&csv, path, &(struct units){2, 0.5, 0}, &status));
-  csv_close(&csv, &status);
+  cr_assert(table_open(&csv, path, &csv_layout, &(struct units){2, 0.5, 0}, &status));
+  table_close(&csv, &status);
   cr_expect_str_eq(strstr(contents(path, &length), "contact_torque,"),
                    "contact_torque,t[s],x[m],y[m],vx[m/s],vy[m/s],omega[1/s]\n");
 }
@@ -193,14 +193,14 @@ Test(csv, without_a_density_of_the_fluid_has_no_forces_in_si)
 Test(csv, what_was_written_is_in_the_file_before_it_is_closed)
 {
   struct some_discs some;
-  struct csv *csv;
+  struct table *csv;
   size_t length;
   char *path = in_scratch("particles.csv");
-  cr_assert(csv_open(&csv, path, &(struct units){0}, &status));
+  cr_assert(table_open(&csv, path, &csv_layout, &(struct units){0}, &status));
   cr_assert(csv_write(csv, 3, some_discs(&some), &status));
   cr_assert_str_eq(strchr(contents(path, &length), '\n'),
                    "\n3,0,0,0,0,0,0,0,0,0,0,0,0,0\n3,1,0,0,0,0,0,0,0,0,0,0,0,0\n");
-  csv_close(&csv, &status);
+  table_close(&csv, &status);
 }
 
 Test(csv, a_number_that_is_not_finite_is_refused_with_its_whole_snapshot)
@@ -208,24 +208,24 @@ Test(csv, a_number_that_is_not_finite_is_refused_with_its_whole_snapshot)
   struct some_discs some;
   struct discs *discs = some_discs(&some);
   discs->omega[1] = NAN;
-  struct csv *csv;
+  struct table *csv;
   size_t length;
   char *path = in_scratch("particles.csv");
-  cr_assert(csv_open(&csv, path, &(struct units){0}, &status));
+  cr_assert(table_open(&csv, path, &csv_layout, &(struct units){0}, &status));
   cr_assert_not(csv_write(csv, 7, discs, &status));
   cr_assert_eq(status.code, DELBM_FAILED);
   cr_assert_str_eq(status.message, "step 7, disc 1: omega is nan");
   discs->omega[1] = 0;
   cr_assert(csv_write(csv, 8, discs, &status));
-  csv_close(&csv, &status);
+  table_close(&csv, &status);
   cr_assert_eq(strncmp(strchr(contents(path, &length), '\n'), "\n8,0,", 5), 0);
 }
 
 Test(csv, an_unwritable_place_is_an_input_output_error)
 {
-  struct csv *csv;
+  struct table *csv;
   write_file(in_scratch("file"), "");
-  cr_assert_not(csv_open(&csv, in_scratch("file/particles.csv"), &(struct units){0}, &status));
+  cr_assert_not(table_open(&csv, in_scratch("file/particles.csv"), &csv_layout, &(struct units){0}, &status));
   cr_assert_eq(status.code, DELBM_IO);
   cr_assert_not_null(strstr(status.message, "file/particles.csv: Not a directory"), "%s", status.message);
   cr_assert_null(csv);
@@ -233,8 +233,8 @@ Test(csv, an_unwritable_place_is_an_input_output_error)
 
 Test(csv, a_full_disk_is_an_input_output_error)
 {
-  struct csv *csv;
-  cr_assert_not(csv_open(&csv, "/dev/full", &(struct units){0}, &status));
+  struct table *csv;
+  cr_assert_not(table_open(&csv, "/dev/full", &csv_layout, &(struct units){0}, &status));
   cr_assert_eq(status.code, DELBM_IO);
   cr_assert_not_null(strstr(status.message, "/dev/full: No space left on device"), "%s", status.message);
 }

@@ -31,8 +31,8 @@ struct recorder {
   const struct scene *scene;
   char *case_path, *table_path, *frames_path, *snapshots_path, *summary_path, *checkpoint_path[CHECKPOINTS];
   char *directory;
-  int lock;          /* descriptor of the locked folder; -1: not open */
-  struct csv *table; /* particles.csv */
+  int lock;            /* descriptor of the locked folder; -1: not open */
+  struct table *table; /* particles.csv */
   struct fields *fields;
   struct schedule rows, frames, snapshots, checkpoints;
   int next_checkpoint;  /* index of the checkpoint to be written next */
@@ -107,7 +107,7 @@ static bool prepare_frames(const struct recorder *recorder, struct status *statu
 static bool start_files(struct recorder *recorder, struct status *status)
 {
   return (recorder->rows.every == 0 ||
-          csv_open(&recorder->table, recorder->table_path, &recorder->scene->units, status)) &&
+          table_open(&recorder->table, recorder->table_path, &csv_layout, &recorder->scene->units, status)) &&
          (recorder->snapshots.every == 0 ||
           fields_open(&recorder->fields, recorder->scene, recorder->directory, &(struct fields_mark){0}, status)) &&
          prepare_frames(recorder, status);
@@ -218,8 +218,9 @@ static bool choose_checkpoint(const struct recorder *recorder, int *chosen, stru
 static bool reopen_table(struct recorder *recorder, int64_t length, struct status *status)
 {
   if (recorder->rows.every == 0) return true;
-  if (length == 0) return csv_open(&recorder->table, recorder->table_path, &recorder->scene->units, status);
-  return csv_reopen(&recorder->table, recorder->table_path, &recorder->scene->units, length, status);
+  if (length == 0)
+    return table_open(&recorder->table, recorder->table_path, &csv_layout, &recorder->scene->units, status);
+  return table_reopen(&recorder->table, recorder->table_path, &csv_layout, &recorder->scene->units, length, status);
 }
 
 /* Also without further snapshots: the earlier snapshots are joined at the end of the run. */
@@ -326,7 +327,7 @@ static bool record_frame(struct recorder *recorder, struct simulation *simulatio
 static bool write_checkpoint(struct recorder *recorder, struct simulation *simulation, struct status *status)
 {
   struct run_record record = {.seconds = recorder_elapsed(recorder), .output = recorder->seconds};
-  if (recorder->table && !csv_sync(recorder->table, &record.table_bytes, status)) return false;
+  if (recorder->table && !table_sync(recorder->table, &record.table_bytes, status)) return false;
   if (recorder->fields) record.snapshots = fields_count(recorder->fields);
   if (!file_stays(recorder->lock, recorder->directory, status)) return false; /* last check before the path is used */
   if (!checkpoint_write(recorder->checkpoint_path[recorder->next_checkpoint], recorder->fingerprint, simulation,
@@ -388,7 +389,7 @@ bool recorder_record(struct recorder *recorder, struct simulation *simulation, b
 bool recorder_finish(struct recorder *recorder, struct status *status)
 {
   struct status ignored;
-  const bool closed = csv_close(&recorder->table, status);
+  const bool closed = table_close(&recorder->table, status);
   return fields_close(&recorder->fields, closed ? status : &ignored) && closed;
 }
 
@@ -412,7 +413,7 @@ void recorder_destroy(struct recorder *recorder)
 {
   if (!recorder) return;
   struct status ignored;
-  csv_close(&recorder->table, &ignored);
+  table_close(&recorder->table, &ignored);
   fields_close(&recorder->fields, &ignored);
   free(recorder->directory);
   free(recorder->ux);
