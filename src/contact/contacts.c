@@ -110,6 +110,8 @@ bool contacts_store(struct contacts *c, size_t discs, struct store *store, struc
   }
   if (stored && !(c->last_substep >= 0 && c->last_substep <= 1))
     return status_fail(status, DELBM_IO, "cannot read %s: a sub-step of %g steps", store->path, c->last_substep);
+  if (stored && !(c->max_overlap >= 0 && isfinite(c->max_overlap)))
+    return status_fail(status, DELBM_IO, "cannot read %s: an overlap of %g radii", store->path, c->max_overlap);
   return stored;
 }
 

@@ -22,7 +22,7 @@ struct figure {
   double real;
 };
 
-enum { FIGURES_MAX = 29 + STAGE_COUNT };
+enum { FIGURES_MAX = 30 + STAGE_COUNT };
 
 struct figures {
   size_t count;
@@ -110,6 +110,7 @@ static struct figures figures_of(const struct summary *summary)
   add_real(&figures, "mean_uy", report->mean_velocity[1]);
   add_real(&figures, "max_mach", report->max_mach);
   add_integer(&figures, "max_substeps", report->max_substeps);
+  add_real(&figures, "max_overlap", report->max_overlap);
   add_real(&figures, "peak_rss_mib", memory_peak_mib());
   add_units(&figures, &summary->scene->units);
   add_text(&figures, "version", DELBM_VERSION)->json_only = true;

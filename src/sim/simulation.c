@@ -27,6 +27,7 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "base/threads.h"
+#include "contact/census.h"
 #include "sim/diagnostics.h"
 #include "sim/divergence.h"
 #include "sim/flow.h"
@@ -562,6 +563,15 @@ static void report_fluid(const struct simulation *s, struct simulation_report *r
         (momentum[axis] + (mass * force.per_mass[axis] + cells * force.uniform[axis]) / 2) / mass;
 }
 
+/* Over all steps, and at the present positions, which are those of the next. */
+static double max_overlap(const struct simulation *s)
+{
+  struct contact_census now;
+  struct status ignored;
+  if (!s->stages.discs || s->team.failed) return s->contacts.max_overlap;
+  return contact_census(s->scene, &s->discs, &now, &ignored) ? fmax(s->contacts.max_overlap, now.max_overlap) : NAN;
+}
+
 void simulation_report(struct simulation *s, struct simulation_report *report)
 {
   *report = (struct simulation_report){.threads = stages_threads(s->scene),
@@ -569,7 +579,8 @@ void simulation_report(struct simulation *s, struct simulation_report *report)
                                        .times = s->times,
                                        .momentum_drift = momentum_drift(s),
                                        .max_mach = s->max_mach,
-                                       .max_substeps = s->stages.discs ? s->contacts.max_substeps : 1};
+                                       .max_substeps = s->stages.discs ? s->contacts.max_substeps : 1,
+                                       .max_overlap = max_overlap(s)};
   if (s->stages.fluid) report_fluid(s, report);
   tuning_text(&s->tuning, report->blocking);
   threads_binding(report->binding);

@@ -93,6 +93,7 @@ struct simulation_report {
   char blocking[32];          /* blocking of the sweep in time: off, its depth, or depth x width */
   char binding[THREADS_TEXT]; /* of threads to processors */
   int max_substeps;           /* largest number of contact sub-steps of a step so far */
+  double max_overlap;         /* largest overlap of a contact so far, over the smaller radius; NAN if memory ran out */
 };
 void simulation_report(struct simulation *simulation, struct simulation_report *report);
 
