@@ -28,7 +28,15 @@ static struct cell_moments moments_at(const struct populations *p, int x, int y)
   return m;
 }
 
-struct fluid_totals diagnostics_totals(const struct populations *p)
+/* rho |u|^2/2. */
+static double kinetic_energy(const struct cell_moments *m, const struct fluid_force *f)
+{
+  const double rho = 1 + m->excess, px = m->jx + (rho * f->per_mass[0] + f->uniform[0]) / 2,
+               py = m->jy + (rho * f->per_mass[1] + f->uniform[1]) / 2;
+  return (px * px + py * py) / (2 * rho);
+}
+
+struct fluid_totals diagnostics_totals(const struct populations *p, const struct fluid_force *force)
 {
   struct fluid_totals totals = {0};
 #pragma omp parallel for ordered schedule(static, 1) num_threads(threads_for((int64_t)p->nx * p->ny))
@@ -39,15 +47,25 @@ struct fluid_totals diagnostics_totals(const struct populations *p)
       row.excess_mass += m.excess;
       row.jx += m.jx;
       row.jy += m.jy;
+      row.kinetic += kinetic_energy(&m, force);
     }
 #pragma omp ordered
     {
       totals.excess_mass += row.excess_mass;
       totals.jx += row.jx;
       totals.jy += row.jy;
+      totals.kinetic += row.kinetic;
     }
   }
   return totals;
+}
+
+void fluid_mean_velocity(const struct fluid_totals *totals, double cells, const struct fluid_force *force,
+                         double mean[2])
+{
+  const double mass = cells + totals->excess_mass, momentum[2] = {totals->jx, totals->jy};
+  for (int axis = 0; axis < 2; axis++)
+    mean[axis] = (momentum[axis] + (mass * force->per_mass[axis] + cells * force->uniform[axis]) / 2) / mass;
 }
 
 /* The cell of row y to report: the first that is not finite, otherwise the fastest. */

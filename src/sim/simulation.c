@@ -60,7 +60,8 @@ struct simulation {
 /* Zero without fluid. */
 static struct fluid_totals fluid_totals(const struct simulation *s)
 {
-  return s->stages.fluid ? diagnostics_totals(&s->flow.populations) : (struct fluid_totals){0};
+  const struct fluid_force force = flow_force(&s->flow);
+  return s->stages.fluid ? diagnostics_totals(&s->flow.populations, &force) : (struct fluid_totals){0};
 }
 
 /* Momentum of fluid and discs that the coupling conserves (exchange.h). */
@@ -347,7 +348,7 @@ static double congestion(struct simulation *s)
   const struct side *side = s->scene->domain.side;
   bool inlet = false;
   for (enum side_name name = 0; name < SIDE_COUNT; name++) inlet |= side[name].type == SIDE_INLET;
-  return inlet ? diagnostics_totals(&s->flow.populations).excess_mass / (double)scene_cells(s->scene) : 0;
+  return inlet ? fluid_totals(s).excess_mass / (double)scene_cells(s->scene) : 0;
 }
 
 /* Adds the probable cause of a divergence at cell (x, y) (-1: not known) to its message, and updates max_mach. */
@@ -522,6 +523,13 @@ void simulation_fields(struct simulation *s, double *density, double *ux, double
   diagnostics_fields(&s->flow.populations, &force, density, ux, uy);
 }
 
+bool simulation_instant(struct simulation *s, struct instant *instant, struct status *status)
+{
+  const struct fluid_force force = flow_force(&s->flow);
+  const struct instant_fluid fluid = {&s->flow.populations, &force, s->flow.kernel ? s->flow.kernel->scan : NULL};
+  return instant_take(s->scene, s->stages.fluid ? &fluid : NULL, &s->discs, instant, status);
+}
+
 bool simulation_sample(struct simulation *s, const struct sample_grid *grid, const struct sample *sample,
                        struct status *status)
 {
@@ -554,13 +562,11 @@ static double momentum_drift(struct simulation *s)
 static void report_fluid(const struct simulation *s, struct simulation_report *report)
 {
   const double cells = (double)scene_cells(s->scene);
-  const struct fluid_totals totals = fluid_totals(s);
   const struct fluid_force force = flow_force(&s->flow);
-  const double mass = s->block_incomplete ? NAN : cells + totals.excess_mass, momentum[2] = {totals.jx, totals.jy};
-  report->mass_drift = s->block_incomplete ? NAN : fabs(totals.excess_mass) / cells;
-  for (int axis = 0; axis < 2; axis++) /* with half the force of the coming step, as in simulation_fields */
-    report->mean_velocity[axis] =
-        (momentum[axis] + (mass * force.per_mass[axis] + cells * force.uniform[axis]) / 2) / mass;
+  struct fluid_totals totals = fluid_totals(s);
+  if (s->block_incomplete) totals.excess_mass = NAN;
+  report->mass_drift = fabs(totals.excess_mass) / cells;
+  fluid_mean_velocity(&totals, cells, &force, report->mean_velocity);
 }
 
 /* Over all steps, and at the present positions, which are those of the next. */

@@ -9,6 +9,7 @@
 #include "base/threads.h"
 #include "model/scene.h"
 #include "sim/initial.h"
+#include "sim/instant.h"
 #include "sim/sample.h"
 #include "sim/stages.h"
 #include "solid/discs.h"
@@ -77,6 +78,9 @@ void simulation_fields(struct simulation *simulation, double *density, double *u
 /* In a scene with fluid: samples on part of the cells (sample.h). */
 bool simulation_sample(struct simulation *simulation, const struct sample_grid *grid, const struct sample *sample,
                        struct status *status);
+
+/* The figures of the present step. Fails only for want of memory. */
+bool simulation_instant(struct simulation *simulation, struct instant *instant, struct status *status);
 
 /* The figures of run.json. */
 struct simulation_report {
