@@ -22,9 +22,9 @@ static const char *const small = "domain: {size: [40, 30], left: periodic, right
                                  "contact: {stiffness: 5}\n"
                                  "run: {steps: 9}\n"
 #ifdef DELBM_PNG
-                                 "output: {every: 2, checkpoint: {every: 3}, frames: {every: 4}}\n";
+                                 "output: {every: 2, series: {every: 2}, checkpoint: {every: 3}, frames: {every: 4}}\n";
 #else
-                                 "output: {every: 2, checkpoint: {every: 3}}\n";
+                                 "output: {every: 2, series: {every: 2}, checkpoint: {every: 3}}\n";
 #endif
 
 /* Kind of failure, command, and judge: a script, with the exit code in `code`, that returns 0 if all is right. */
@@ -35,7 +35,7 @@ struct trial {
 
 /* Shell functions of the judges. */
 static const char *const functions =
-    "same() { cmp whole/particles.csv $1/particles.csv && "
+    "same() { cmp whole/particles.csv $1/particles.csv && cmp whole/series.csv $1/series.csv && "
     "if test -e whole/frames; then diff -r whole/frames $1/frames; fi && "
     "if test -e whole/fields.h5; then cmp whole/fields.h5 $1/fields.h5 && cmp whole/fields.xdmf $1/fields.xdmf; fi; }\n"
     "told() { grep -qE \"^(delbm|libgomp): .*($1)\" err; }\n"

@@ -106,13 +106,15 @@ Test(program, a_diverging_run_stops_says_so_and_keeps_what_it_wrote)
                             "coupling: {solve: explicit-averaged}\n"
                             "particles: {density: 0.3, gravity: [0, -1e-3], discs: [{radius: 8, position: [32, 32]}]}\n"
                             "run: {steps: 5000}\n"
-                            "output: {every: 1}\n");
+                            "output: {every: 1, series: {every: 1}}\n");
   cr_assert_eq(shell("%s run light.yaml --out o >out 2>err", DELBM), 1);
   cr_expect(contains("out", "status=diverged"));
   cr_expect(contains("err", "diverged at step"));
   cr_expect(contains("o/run.json", "\"status\": \"diverged\""));
   cr_expect_eq(shell("grep -q '\"reason\": \"diverged at step .* disc 0 ' o/run.json"), 0);
-  cr_expect_eq(shell("test $(wc -l <o/particles.csv) -gt 3 && ! grep -qiE 'nan|inf' o/particles.csv o/run.json"), 0);
+  cr_expect_eq(shell("test $(wc -l <o/particles.csv) -gt 3 && test $(wc -l <o/series.csv) -gt 3 && "
+                     "! grep -qiE 'nan|inf' o/particles.csv o/series.csv o/run.json"),
+               0);
 }
 
 Test(program, a_run_faster_than_advised_ends_with_a_warning_that_run_json_has_too)

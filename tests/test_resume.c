@@ -277,6 +277,7 @@ static const char *const crowd = "title: crowd\n"
                                  "output:\n"
                                  "  every: 50\n"
                                  "  checkpoint: {every: 97}\n"
+                                 "  series: {every: 30}\n"
 #ifdef DELBM_PNG
                                  "  frames: {every: 400, discs: height}\n"
 #endif
@@ -287,18 +288,19 @@ static const char *const crowd = "title: crowd\n"
 
 /* Compares the folders `whole` and `cut`, but for the run time. */
 static const char *const compare =
-    "cmp whole/particles.csv cut/particles.csv && cmp whole/case.yaml cut/case.yaml && "
+    "cmp whole/particles.csv cut/particles.csv && cmp whole/series.csv cut/series.csv && cmp whole/case.yaml "
+    "cut/case.yaml && "
     "{ test ! -e whole/frames || diff -r whole/frames cut/frames; } && "
     "{ test ! -e whole/fields.h5 || { cmp whole/fields.h5 cut/fields.h5 && cmp whole/fields.xdmf cut/fields.xdmf; }; } "
     "&& "
     "for run in whole cut; do for k in 0 1; do "
     "printf '%d %d\\n' $(od -An -t d8 -j 24 -N 8 $run/checkpoint.$k) $k; done | sort -n | tail -n 1 | "
-    "{ read -r step k; head -c -100 $run/checkpoint.$k >$run.state; }; done; cmp whole.state cut.state && "
-    "for key in steps mass_drift max_mach max_substeps; do "
+    "{ read -r step k; head -c -108 $run/checkpoint.$k >$run.state; }; done; cmp whole.state cut.state && "
+    "for key in steps mass_drift max_mach max_substeps max_overlap; do "
     "test \"$(grep $key whole/run.json)\" = \"$(grep $key cut/run.json)\" || exit 1; done";
 
-/* 100 bytes: stage_times, and behind them a mark, struct run_record and the checksum. */
-_Static_assert(sizeof(struct stage_times) + 16 + sizeof(struct run_record) + 4 == 100, "what `compare` cuts off");
+/* 108 bytes: stage_times, and behind them a mark, struct run_record and the checksum. */
+_Static_assert(sizeof(struct stage_times) + 16 + sizeof(struct run_record) + 4 == 108, "what `compare` cuts off");
 
 Test(resume, after_kills_at_any_moment_the_files_equal_an_unbroken_run)
 {

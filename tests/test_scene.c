@@ -145,6 +145,7 @@ static void expect_same_scene(const struct scene *a, const struct scene *b)
   cr_expect_eq(a->run.steps, b->run.steps);
   cr_expect_eq(a->run.check, b->run.check);
   cr_expect_eq(a->output.every, b->output.every);
+  cr_expect_eq(a->output.series.every, b->output.series.every);
   cr_expect_eq(a->output.frames.every, b->output.frames.every);
   cr_expect_eq(a->output.frames.quantity, b->output.frames.quantity);
   cr_expect_eq(a->output.frames.maximum, b->output.frames.maximum);
@@ -209,7 +210,8 @@ static const char full[] = "title: \"All keys: \\\"one\\\" # two\\n\\u00fc\\u202
                            "  substeps: 4\n"
                            "  steps_per_contact: 30\n"
                            "run: {steps: 1e6, check: 7}\n"
-                           "output: {every: 0, frames: {every: 50, quantity: vorticity, maximum: 0.125}}\n";
+                           "output: {every: 0, series: {every: 7},\n"
+                           "         frames: {every: 50, quantity: vorticity, maximum: 0.125}}\n";
 
 Test(scene, full_case_sets_domain_and_fluid)
 {
@@ -262,7 +264,7 @@ Test(scene, full_case_sets_contact_run_and_output)
   cr_expect(scene->contact.damping_form == DAMPING_PRINTED && scene->contact.substeps == 4);
   cr_expect_eq(scene->contact.steps_per_contact, 30);
   cr_expect(scene->run.steps == 1000000 && scene->run.check == 7);
-  cr_expect(scene->output.every == 0 && scene->output.frames.every == 50);
+  cr_expect(scene->output.every == 0 && scene->output.series.every == 7 && scene->output.frames.every == 50);
   cr_expect(scene->output.frames.quantity == FRAME_VORTICITY && scene->output.frames.maximum == 0.125);
   release(&reading);
 }
@@ -286,6 +288,7 @@ Test(scene, minimal_case_has_documented_defaults)
   cr_expect_eq(scene->contact.steps_per_contact, 20);
   cr_expect_eq(scene->run.check, 50);
   cr_expect(scene->output.every == 100 && scene->output.frames.every == 0 && scene->output.frames.maximum == 0);
+  cr_expect_eq(scene->output.series.every, 0);
   cr_expect_eq(scene->output.frames.quantity, FRAME_SPEED);
   release(&reading);
 }

@@ -37,8 +37,8 @@ A case is a YAML file. *delbm run --help-keys* lists every key with its meaning,
 
 # FILES
 
-A run writes _case.yaml_, _particles.csv_, _run.json_ and, if the case asks for them, _fields.h5_ with _fields.xdmf_,
-pictures and checkpoints into its folder.
+A run writes _case.yaml_, _particles.csv_, _run.json_ and, if the case asks for them, _series.csv_, _fields.h5_ with
+_fields.xdmf_, pictures and checkpoints into its folder.
 
 # ENVIRONMENT
 

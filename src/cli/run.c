@@ -83,9 +83,10 @@ const struct command command_run = {
                 {"help", NULL, "this text", .kind = OPTION_HELP},
                 {"help-keys", NULL, "every key of a case, with its meaning and allowed values", .kind = OPTION_PRINT,
                  .print = print_keys}},
-    .notes = "DIR receives case.yaml (the case as run), particles.csv, fields.h5, frames/*.png and run.json. The last "
-             "line\n"
-             "on stdout has the figures of run.json. An interrupt (Ctrl-C, SIGTERM, SIGHUP) ends the run after a\n"
+    .notes = "DIR receives case.yaml (the case as run), particles.csv, series.csv, fields.h5, frames/*.png and "
+             "run.json.\n"
+             "The last line on stdout has the figures of run.json. An interrupt (Ctrl-C, SIGTERM, SIGHUP) ends the run "
+             "after a\n"
              "checkpoint, from which `delbm resume DIR` goes on.",
     .run = run_case,
 };

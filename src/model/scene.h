@@ -135,6 +135,9 @@ struct scene {
   struct {
     int64_t every; /* steps between rows of particles.csv; 0: none */
     struct {
+      int64_t every; /* 0: none */
+    } series;
+    struct {
       int64_t every; /* 0: only when interrupted */
     } checkpoint;
     struct {

@@ -11,7 +11,7 @@
 static const char magic[8] = "delbm\r\n";
 static const uint32_t order = 0x01020304;
 
-enum { FORMAT = 8, BUFFER = 1 << 16 };
+enum { FORMAT = 9, BUFFER = 1 << 16 };
 
 static bool store_record(struct run_record *record, struct store *store, struct status *status)
 {

@@ -11,10 +11,11 @@
 
 /* Output of the run up to the checkpoint. */
 struct run_record {
-  int64_t table_bytes; /* length of particles.csv */
-  int64_t snapshots;   /* number in fields.h5 of earlier steps than the checkpoint */
-  double seconds;      /* wall time of the run */
-  double output;       /* time of output in `seconds` */
+  int64_t discs_bytes;  /* length of particles.csv */
+  int64_t series_bytes; /* length of series.csv */
+  int64_t snapshots;    /* number in fields.h5 of earlier steps than the checkpoint */
+  double seconds;       /* wall time of the run */
+  double output;        /* time of output in `seconds` */
 };
 
 enum { CHECKPOINT_KERNEL = 32 };

@@ -9,6 +9,7 @@
 #include "output/file.h"
 #include "output/numbered.h"
 #include "output/picture.h"
+#include "output/series.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -29,12 +30,14 @@ enum { CHECKPOINTS = 2 };
 
 struct recorder {
   const struct scene *scene;
-  char *case_path, *table_path, *frames_path, *snapshots_path, *summary_path, *checkpoint_path[CHECKPOINTS];
+  char *case_path, *discs_path, *series_path, *frames_path, *snapshots_path, *summary_path,
+      *checkpoint_path[CHECKPOINTS];
   char *directory;
-  int lock;            /* descriptor of the locked folder; -1: not open */
-  struct table *table; /* particles.csv */
+  int lock;             /* descriptor of the locked folder; -1: not open */
+  struct table *discs;  /* particles.csv */
+  struct table *series; /* series.csv */
   struct fields *fields;
-  struct schedule rows, frames, snapshots, checkpoints;
+  struct schedule rows, series_rows, frames, snapshots, checkpoints;
   int next_checkpoint;  /* index of the checkpoint to be written next */
   uint32_t fingerprint; /* of the case */
   double *ux, *uy;      /* fields of a frame; NULL without frames or without fluid */
@@ -71,9 +74,11 @@ static bool remove_checkpoints(const struct recorder *recorder, struct status *s
 
 static bool remove_earlier_run(const struct recorder *recorder, bool *replaced, struct status *status)
 {
-  *replaced = access(recorder->summary_path, F_OK) == 0 || access(recorder->table_path, F_OK) == 0;
+  *replaced = access(recorder->summary_path, F_OK) == 0 || access(recorder->discs_path, F_OK) == 0 ||
+              access(recorder->series_path, F_OK) == 0;
   return remove_checkpoints(recorder, status) && file_remove(recorder->summary_path, status) &&
-         file_remove(recorder->table_path, status) && remove_named(recorder->directory, "fields.h5", status) &&
+         file_remove(recorder->discs_path, status) && file_remove(recorder->series_path, status) &&
+         remove_named(recorder->directory, "fields.h5", status) &&
          remove_named(recorder->directory, "fields.xdmf", status) &&
          numbered_remove_folder(recorder->snapshots_path, "h5", status) &&
          numbered_remove(recorder->frames_path, 0, "png", status);
@@ -104,10 +109,27 @@ static bool prepare_frames(const struct recorder *recorder, struct status *statu
   return recorder->frames.every == 0 || file_make_directory(recorder->frames_path, status);
 }
 
+/* Opens a table with rows at `schedule`, truncated to `length` bytes; 0: with its header alone. */
+static bool open_table(const struct recorder *recorder, struct table **table, const struct schedule *schedule,
+                       const char *path, const struct table_layout *layout, int64_t length, struct status *status)
+{
+  const struct units *units = &recorder->scene->units;
+  if (schedule->every == 0) return true;
+  if (length == 0) return table_open(table, path, layout, units, status);
+  return table_reopen(table, path, layout, units, length, status);
+}
+
+static bool open_tables(struct recorder *recorder, const struct run_record *record, struct status *status)
+{
+  return open_table(recorder, &recorder->discs, &recorder->rows, recorder->discs_path, &csv_layout, record->discs_bytes,
+                    status) &&
+         open_table(recorder, &recorder->series, &recorder->series_rows, recorder->series_path, &series_layout,
+                    record->series_bytes, status);
+}
+
 static bool start_files(struct recorder *recorder, struct status *status)
 {
-  return (recorder->rows.every == 0 ||
-          table_open(&recorder->table, recorder->table_path, &csv_layout, &recorder->scene->units, status)) &&
+  return open_tables(recorder, &(struct run_record){0}, status) &&
          (recorder->snapshots.every == 0 ||
           fields_open(&recorder->fields, recorder->scene, recorder->directory, &(struct fields_mark){0}, status)) &&
          prepare_frames(recorder, status);
@@ -137,7 +159,8 @@ static bool prepare_paths(struct recorder *recorder, const char *directory, stru
     char **path;
     const char *name;
   } paths[] = {{&recorder->case_path, "case.yaml"},
-               {&recorder->table_path, "particles.csv"},
+               {&recorder->discs_path, "particles.csv"},
+               {&recorder->series_path, "series.csv"},
                {&recorder->frames_path, "frames"},
                {&recorder->snapshots_path, "fields"},
                {&recorder->summary_path, "run.json"},
@@ -165,6 +188,7 @@ static bool create(struct recorder **recorder, const struct scene *scene, const 
   **recorder = (struct recorder){.scene = scene,
                                  .lock = -1,
                                  .rows = {.every = scene->output.every, .recorded = -1},
+                                 .series_rows = {.every = scene->output.series.every, .recorded = -1},
                                  .frames = {.every = scene->output.frames.every, .recorded = -1},
                                  .snapshots = {.every = scene->output.fields.every, .recorded = -1},
                                  .checkpoints = {.every = scene->output.checkpoint.every, .recorded = -1}};
@@ -215,14 +239,6 @@ static bool choose_checkpoint(const struct recorder *recorder, int *chosen, stru
   return *chosen >= 0;
 }
 
-static bool reopen_table(struct recorder *recorder, int64_t length, struct status *status)
-{
-  if (recorder->rows.every == 0) return true;
-  if (length == 0)
-    return table_open(&recorder->table, recorder->table_path, &csv_layout, &recorder->scene->units, status);
-  return table_reopen(&recorder->table, recorder->table_path, &csv_layout, &recorder->scene->units, length, status);
-}
-
 /* Also without further snapshots: the earlier snapshots are joined at the end of the run. */
 static bool reopen_fields(struct recorder *recorder, int64_t step, int64_t count, struct status *status)
 {
@@ -251,9 +267,8 @@ static bool resume(struct recorder *recorder, struct simulation *simulation, str
   resumption->other_kernel = strcmp(head.kernel, simulation_kernel(simulation)) != 0;
   if (!checkpoint_read(recorder->checkpoint_path[chosen], simulation, &record, status) ||
       !file_remove(recorder->summary_path, status) || !write_case(recorder, status) ||
-      !reopen_table(recorder, record.table_bytes, status) ||
-      !reopen_fields(recorder, head.step, record.snapshots, status) || !prepare_frames(recorder, status) ||
-      !numbered_remove(recorder->frames_path, head.step, "png", status))
+      !open_tables(recorder, &record, status) || !reopen_fields(recorder, head.step, record.snapshots, status) ||
+      !prepare_frames(recorder, status) || !numbered_remove(recorder->frames_path, head.step, "png", status))
     return false;
   recorder->next_checkpoint = !chosen;
   recorder->checkpoints.recorded = head.step;
@@ -278,9 +293,11 @@ static int64_t earlier(int64_t a, int64_t b)
 int64_t recorder_next(const struct recorder *recorder, int64_t step)
 {
   int64_t end = recorder->scene->run.steps;
-  const int64_t shown = earlier(next_due(&recorder->rows, step, end), next_due(&recorder->frames, step, end));
-  return earlier(earlier(shown, next_due(&recorder->snapshots, step, end)),
-                 next_due(&recorder->checkpoints, step, end));
+  const struct schedule *const all[] = {&recorder->rows, &recorder->series_rows, &recorder->frames,
+                                        &recorder->snapshots, &recorder->checkpoints};
+  int64_t next = end;
+  for (size_t k = 0; k < sizeof all / sizeof all[0]; k++) next = earlier(next, next_due(all[k], step, end));
+  return next;
 }
 
 /* Sets the colour values of the discs; returns the end of the scale (struct picture). The height at step 0 comes
@@ -327,7 +344,8 @@ static bool record_frame(struct recorder *recorder, struct simulation *simulatio
 static bool write_checkpoint(struct recorder *recorder, struct simulation *simulation, struct status *status)
 {
   struct run_record record = {.seconds = recorder_elapsed(recorder), .output = recorder->seconds};
-  if (recorder->table && !table_sync(recorder->table, &record.table_bytes, status)) return false;
+  if (recorder->discs && !table_sync(recorder->discs, &record.discs_bytes, status)) return false;
+  if (recorder->series && !table_sync(recorder->series, &record.series_bytes, status)) return false;
   if (recorder->fields) record.snapshots = fields_count(recorder->fields);
   if (!file_stays(recorder->lock, recorder->directory, status)) return false; /* last check before the path is used */
   if (!checkpoint_write(recorder->checkpoint_path[recorder->next_checkpoint], recorder->fingerprint, simulation,
@@ -356,19 +374,28 @@ bool recorder_checkpoint(struct recorder *recorder, struct simulation *simulatio
   return explain(recorder, written, status);
 }
 
+static bool record_instant(struct recorder *recorder, struct simulation *simulation, struct status *status)
+{
+  struct instant instant;
+  return simulation_instant(simulation, &instant, status) &&
+         series_write(recorder->series, simulation_step(simulation), &instant, status);
+}
+
 static bool record_due(struct recorder *recorder, struct simulation *simulation, bool last, struct status *status)
 {
   int64_t step = simulation_step(simulation);
   if (step > 0 && is_due(&recorder->checkpoints, step, last) && !write_checkpoint(recorder, simulation, status))
     return false;
   bool rows = is_due(&recorder->rows, step, last), frame = is_due(&recorder->frames, step, last);
-  bool snapshot = is_due(&recorder->snapshots, step, last);
-  if (!rows && !frame && !snapshot && !last) return true;
+  bool series = is_due(&recorder->series_rows, step, last), snapshot = is_due(&recorder->snapshots, step, last);
+  if (!rows && !series && !frame && !snapshot && !last) return true;
   if (!file_stays(recorder->lock, recorder->directory, status)) return false;
   /* csv_write checks its rows by itself; a check of all cells costs more than the rows */
-  if ((frame || snapshot || last) && !simulation_check(simulation, status)) return false;
-  if (rows && !csv_write(recorder->table, step, simulation_discs(simulation), status)) return false;
+  if ((series || frame || snapshot || last) && !simulation_check(simulation, status)) return false;
+  if (rows && !csv_write(recorder->discs, step, simulation_discs(simulation), status)) return false;
   if (rows) recorder->rows.recorded = step;
+  if (series && !record_instant(recorder, simulation, status)) return false;
+  if (series) recorder->series_rows.recorded = step;
   if (frame && !record_frame(recorder, simulation, status)) return false;
   if (frame) recorder->frames.recorded = step;
   if (snapshot && !fields_write(recorder->fields, simulation, status)) return false;
@@ -389,8 +416,9 @@ bool recorder_record(struct recorder *recorder, struct simulation *simulation, b
 bool recorder_finish(struct recorder *recorder, struct status *status)
 {
   struct status ignored;
-  const bool closed = table_close(&recorder->table, status);
-  return fields_close(&recorder->fields, closed ? status : &ignored) && closed;
+  const bool discs = table_close(&recorder->discs, status);
+  const bool tables = table_close(&recorder->series, discs ? status : &ignored) && discs;
+  return fields_close(&recorder->fields, tables ? status : &ignored) && tables;
 }
 
 bool recorder_summarise(const struct recorder *recorder, const struct summary *summary, struct status *status)
@@ -413,14 +441,16 @@ void recorder_destroy(struct recorder *recorder)
 {
   if (!recorder) return;
   struct status ignored;
-  table_close(&recorder->table, &ignored);
+  table_close(&recorder->discs, &ignored);
+  table_close(&recorder->series, &ignored);
   fields_close(&recorder->fields, &ignored);
   free(recorder->directory);
   free(recorder->ux);
   free(recorder->uy);
   free(recorder->values);
   free(recorder->case_path);
-  free(recorder->table_path);
+  free(recorder->discs_path);
+  free(recorder->series_path);
   free(recorder->frames_path);
   free(recorder->snapshots_path);
   free(recorder->summary_path);

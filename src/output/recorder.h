@@ -1,4 +1,4 @@
-/* The folder of a run: case.yaml, particles.csv, fields.h5, frames/, checkpoints and run.json. Locked while a
+/* The folder of a run: case.yaml, particles.csv, series.csv, fields.h5, frames/, checkpoints and run.json. Locked while a
  * recorder is open. */
 #ifndef DELBM_OUTPUT_RECORDER_H
 #define DELBM_OUTPUT_RECORDER_H
@@ -8,7 +8,7 @@
 struct recorder;
 
 /* Creates and locks the folder, removes the files of an earlier run (*replaced: there was one), writes case.yaml and
- * starts particles.csv and fields.h5. The scene must outlive the recorder. */
+ * starts particles.csv, series.csv and fields.h5. The scene must outlive the recorder. */
 bool recorder_open(struct recorder **recorder, const struct scene *scene, const char *directory, bool *replaced,
                    struct status *status);
 
@@ -35,7 +35,7 @@ bool recorder_record(struct recorder *recorder, struct simulation *simulation, b
 /* Writes a checkpoint at the simulation's step over the older of the two. */
 bool recorder_checkpoint(struct recorder *recorder, struct simulation *simulation, struct status *status);
 
-/* Closes particles.csv and fields.xdmf. */
+/* Closes particles.csv, series.csv and fields.xdmf. */
 bool recorder_finish(struct recorder *recorder, struct status *status);
 
 /* Writes run.json. */

@@ -64,7 +64,7 @@ static void write_seed(const char *path)
   struct scene scene = small_case();
   struct simulation *simulation;
   struct status status;
-  const struct run_record record = {.table_bytes = 100, .seconds = 1, .output = 0.1};
+  const struct run_record record = {.discs_bytes = 100, .seconds = 1, .output = 0.1};
   if (!simulation_create(&simulation, &scene, &status) || !simulation_advance(simulation, 7, &status) ||
       !checkpoint_write(path, FINGERPRINT, simulation, &record, &status)) {
     fprintf(stderr, "%s\n", status.message);
