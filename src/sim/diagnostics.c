@@ -15,10 +15,12 @@ struct cell_moments {
   double excess, jx, jy; /* rho - 1, j */
 };
 
-static struct cell_moments moments_at(const struct populations *p, int x, int y)
+/* Of the cell x cells to the right of the addresses a. */
+static inline struct cell_moments moments_from(void *const a[Q], enum precision precision, int x)
 {
   double g[Q];
-  populations_cell(p, x, y, g);
+  for (int i = 0; i < Q; i++)
+    g[i] = precision == PRECISION_DOUBLE ? ((const double *)a[i])[x] : (double)((const float *)a[i])[x];
   struct cell_moments m = {0};
   for (int i = 0; i < Q; i++) {
     m.excess += g[i];
@@ -42,8 +44,10 @@ struct fluid_totals diagnostics_totals(const struct populations *p, const struct
 #pragma omp parallel for ordered schedule(static, 1) num_threads(threads_for((int64_t)p->nx * p->ny))
   for (int y = 0; y < p->ny; y++) {
     struct fluid_totals row = {0};
+    void *a[Q];
+    populations_cells(p, 0, y, a);
     for (int x = 0; x < p->nx; x++) {
-      const struct cell_moments m = moments_at(p, x, y);
+      const struct cell_moments m = moments_from(a, p->precision, x);
       row.excess_mass += m.excess;
       row.jx += m.jx;
       row.jy += m.jy;
@@ -72,8 +76,10 @@ void fluid_mean_velocity(const struct fluid_totals *totals, double cells, const 
 static struct worst_cell worst_of_row(const struct populations *p, int y)
 {
   struct worst_cell worst = {.speed2 = -1, .y = y};
+  void *a[Q];
+  populations_cells(p, 0, y, a);
   for (int x = 0; x < p->nx; x++) {
-    const struct cell_moments m = moments_at(p, x, y);
+    const struct cell_moments m = moments_from(a, p->precision, x);
     const double rho = 1 + m.excess, speed2 = (m.jx * m.jx + m.jy * m.jy) / (rho * rho);
     if (!isfinite(speed2) || rho <= 0) return (struct worst_cell){NAN, x, y};
     if (speed2 > worst.speed2) worst = (struct worst_cell){speed2, x, y};
@@ -112,20 +118,25 @@ double diagnostics_largest_speed(const struct populations *p)
 {
   double largest = 0;
 #pragma omp parallel for schedule(static) reduction(max : largest) num_threads(threads_for((int64_t)p->nx * p->ny))
-  for (int y = 0; y < p->ny; y++)
+  for (int y = 0; y < p->ny; y++) {
+    void *a[Q];
+    populations_cells(p, 0, y, a);
     for (int x = 0; x < p->nx; x++) {
-      const struct cell_moments m = moments_at(p, x, y);
+      const struct cell_moments m = moments_from(a, p->precision, x);
       const double speed = hypot(m.jx, m.jy) / fabs(1 + m.excess);
       if (isfinite(speed) && speed > largest) largest = speed;
     }
+  }
   return largest;
 }
 
 void diagnostics_row(const struct populations *p, const struct fluid_force *force, int y, double *density, double *ux,
                      double *uy)
 {
+  void *a[Q];
+  populations_cells(p, 0, y, a);
   for (int x = 0; x < p->nx; x++) {
-    const struct cell_moments m = moments_at(p, x, y);
+    const struct cell_moments m = moments_from(a, p->precision, x);
     const double rho = 1 + m.excess;
     if (density) density[x] = rho;
     if (ux) ux[x] = (m.jx + (rho * force->per_mass[0] + force->uniform[0]) / 2) / rho;
