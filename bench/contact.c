@@ -6,6 +6,7 @@
 #include "base/clock.h"
 #include "bench.h"
 #include "contact/cells_area.h"
+#include "contact/census.h"
 #include "contact/pairs.h"
 #include "scenes.h"
 #include "sim/simulation.h"
@@ -218,28 +219,57 @@ static bool bench_searches(int n, double radius, int size, const struct bench_re
   return ok;
 }
 
-/* The stage in a run: search, forces, motion. */
-static bool bench_stage(int n, double radius, int size, const struct bench_report *report, struct status *status)
+/* Of the stage in a run: ms a step, sub-steps, contacts at the end. */
+struct stage_figures {
+  double ms;
+  int substeps;
+  size_t contacts;
+};
+
+/* The stage in a run of the scene: search, forces, and sub-steps. */
+static bool measure_stage(struct scene *scene, double friction, int steps, struct stage_figures *f,
+                          struct status *status)
+{
+  struct simulation *simulation = NULL;
+  struct simulation_report before, after;
+  struct contact_census census = {0};
+  scene->contact.friction = friction;
+  bool ok = simulation_create(&simulation, scene, status) && simulation_advance(simulation, 2, status);
+  if (ok) {
+    simulation_report(simulation, &before);
+    ok = simulation_advance(simulation, steps, status) &&
+         contact_census(scene, simulation_discs(simulation), &census, status);
+    simulation_report(simulation, &after);
+  }
+  if (ok)
+    *f =
+        (struct stage_figures){1e3 * (after.times.seconds[STAGE_CONTACT] - before.times.seconds[STAGE_CONTACT]) / steps,
+                               after.max_substeps, census.contacts};
+  simulation_destroy(simulation);
+  return ok;
+}
+
+/* Without and with friction. */
+static bool bench_stage(int n, double radius, int size, double stiffness, const struct bench_report *report,
+                        struct status *status)
 {
   const double spacing = (double)size / n;
   const int steps = report->quick ? 2 : STEPS;
   struct scene scene = scene_crowd(size, size, radius, spacing, fmin(1, spacing / 2 - radius + 0.2));
-  struct simulation *simulation = NULL;
-  struct simulation_report before, after;
-  bool ok = simulation_create(&simulation, &scene, status) && simulation_advance(simulation, 2, status);
+  struct stage_figures smooth, rough;
+  scene.contact.stiffness = stiffness;
+  const bool ok = measure_stage(&scene, 0, steps, &smooth, status) && measure_stage(&scene, 0.5, steps, &rough, status);
   if (ok) {
-    simulation_report(simulation, &before);
-    ok = simulation_advance(simulation, steps, status);
-    simulation_report(simulation, &after);
-  }
-  if (ok) {
-    const double ms = 1e3 * (after.times.seconds[STAGE_CONTACT] - before.times.seconds[STAGE_CONTACT]) / steps;
-    printf("%6g %7zu %6d %10.4f %9d\n", radius, scene.particles.count, size, ms, after.max_substeps);
+    printf("%6g %7zu %6d %10g %9d %9zu %10.4f %10.4f\n", radius, scene.particles.count, size, stiffness,
+           smooth.substeps, smooth.contacts, smooth.ms, rough.ms);
+    fflush(stdout);
     if (report->json)
-      fprintf(report->json, "%s\n    {\"discs\": %zu, \"r\": %g, \"box\": %d, \"stage_ms\": %.6g, \"substeps\": %d}",
-              n == 50 && radius < 3 ? "" : ",", scene.particles.count, radius, size, ms, after.max_substeps);
+      fprintf(report->json,
+              "%s\n    {\"discs\": %zu, \"r\": %g, \"box\": %d, \"stiffness\": %g, \"stage_ms\": %.6g, "
+              "\"friction_ms\": %.6g, \"substeps\": %d, \"contacts\": %zu}",
+              n == 50 && radius < 3 ? "" : ",", scene.particles.count, radius, size, stiffness, smooth.ms, rough.ms,
+              smooth.substeps, smooth.contacts);
   }
-  simulation_destroy(simulation);
   scene_clear(&scene);
   return ok;
 }
@@ -266,11 +296,12 @@ bool bench_contact(const struct bench_report *report, struct status *status)
 {
   if (report->json) fprintf(report->json, "\"searches\": [");
   if (!all_searches(report, status)) return false;
-  printf("\nms a step of the contact stage in a run\n%6s %7s %6s %10s %9s\n", "R", "discs", "box", "stage",
-         "sub-steps");
+  printf("\nms a step of the contact stage in a run, friction 0 and 0.5\n%6s %7s %6s %10s %9s %9s %10s %10s\n", "R",
+         "discs", "box", "stiffness", "sub-steps", "contacts", "smooth", "friction");
   if (report->json) fprintf(report->json, "], \"stages\": [");
-  const bool ok = bench_stage(50, 2, 1000, report, status) && bench_stage(50, 5, 1000, report, status) &&
-                  bench_stage(100, 2, 400, report, status) && bench_stage(100, 5, 1000, report, status);
+  const bool ok = bench_stage(50, 2, 1000, 0.25, report, status) && bench_stage(50, 5, 1000, 0.25, report, status) &&
+                  bench_stage(100, 2, 400, 0.25, report, status) && bench_stage(100, 5, 1000, 0.25, report, status) &&
+                  bench_stage(100, 5, 1000, 25, report, status);
   if (report->json) fprintf(report->json, "]");
   return ok;
 }
