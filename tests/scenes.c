@@ -37,6 +37,7 @@ struct scene scene_box(int nx, int ny, double viscosity, enum sides sides)
   scene_use_adaptive(&scene);
   scene.coupling.form = FORM_MIDPOINT;
   scene.contact.stiffness = 0.25;
+  scene.contact.overlap = 0.01;
   scene.contact.alpha = 0.3;
   scene.contact.tangential_ratio = 0.8;
   scene.contact.damping = 0.34;

@@ -138,7 +138,9 @@ static enum delbm_code opening(const char *discs, struct delbm_status *status)
   char text[512];
   struct delbm_simulation *s;
   snprintf(text, sizeof text,
-           "{domain: {size: [60, 60]}, fluid: {viscosity: 0.05}, particles: {density: 50, discs: [%s]}}", discs);
+           "{domain: {size: [60, 60]}, fluid: {viscosity: 0.05}, contact: {stiffness: 0.25}, particles: {density: 50, "
+           "discs: [%s]}}",
+           discs);
   const enum delbm_code code = delbm_open_text(&s, text, NULL, 0, status);
   delbm_close(s);
   return code;

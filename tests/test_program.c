@@ -512,7 +512,7 @@ Test(program, info_warns_once_of_small_viscosity)
   }
 }
 
-static const char *const notes_of_rest[] = {"come to lie in a pile", "at rest", "sound between"};
+static const char *const notes_of_rest[] = {"come to lie in a pile", "note: at rest", "sound between"};
 
 /* Expects exactly the notes named by letters: p(ile), o(verlap), s(ound). */
 static void expect_notes(const char *path, const char *settings, const char *letters)
@@ -533,6 +533,7 @@ static const char *const pile =
     "  density: 2500 kg/m^3\n"
     "  gravity: [0, -9.81 m/s^2]\n"
     "  fill: {spacing: 2.2 mm, radius: 1 mm, jitter: 0.05 mm, region: [0, 0, 12 mm, 9 mm]}\n"
+    "contact: {stiffness: 0.25}\n"
     "run: {steps: 1 s}\n";
 
 Test(program, info_warns_of_a_pile_and_of_overlap_under_load_where_discs_come_to_rest)
@@ -568,13 +569,38 @@ Test(program, info_foresees_the_overlap_in_a_column_and_names_the_stiffness)
       "--set 'domain.size=[80 mm, 40 mm]' --set 'run.steps=0.5 s' --set "
       "'particles.fill={spacing: 2.02 mm, radius: 1 mm, region: [0, 0, 20 mm, 36 mm], jitter: 0}'";
   expect_notes("pile.yaml", column, "po");
-  cr_expect_eq(shell("awk '/at rest/ {match($0, /about [0-9.]+ %%/); p = substr($0, RSTART + 6, RLENGTH - 8); "
+  cr_expect_eq(shell("awk '/note: at rest/ {match($0, /about [0-9.]+ %%/); p = substr($0, RSTART + 6, RLENGTH - 8); "
                      "exit !(p + 0 > 8 && p + 0 < 16)}' i"),
                0);
   cr_expect_eq(shell("k=$(sed -n 's/.*contact.stiffness >= \\([0-9.e+]*\\),.*/\\1/p' i) && test -n \"$k\" && "
-                     "$DELBM info pile.yaml %s --set contact.stiffness=$k >i && ! grep 'at rest' i",
+                     "$DELBM info pile.yaml %s --set contact.stiffness=$k >i && ! grep 'note: at rest' i",
                      column),
                0);
+}
+
+Test(program, info_says_the_stiffness_where_it_is_from_and_the_overlap_under_the_expected_loads)
+{
+  shell_write("pile.yaml", pile);
+  static const struct {
+    const char *settings, *words;
+  } cases[] = {
+      {"", "^contacts .* stiffness 0.25, alpha"},
+      {"", "^loads        at rest 0.068., radius 10 on radius 10: overlap 3.6 % of the smaller radius$"},
+      {"", "^             impact at up to 0.0201 cells/step, radius 10 against a side: overlap up to 11 %, about 1 "
+           "sub-step a step$"},
+      {"--set contact.stiffness=auto", "^contacts .* stiffness [0-9.]* (auto: impacts), alpha"},
+      {"--set contact.stiffness=auto", "^             impact .*: overlap up to 1 %, about [2-4] sub-steps a step$"},
+      {"--set contact.stiffness=auto --set contact.overlap=0.05", "^             impact .*: overlap up to 5 %"},
+      {"--set contact.stiffness=auto --set contact.area=cells", "stiffness [0-9.]* (auto: the number of sub-steps)"},
+      {"--set contact.stiffness=auto --set particles.density=1", "stiffness 0.25 (auto: the least)"},
+      {"--set contact.stiffness=auto --set contact.overlap=1e-4", "note: so many sub-steps .*contact.overlap >= 0.000"},
+  };
+  for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++)
+    cr_expect_eq(shell("$DELBM info pile.yaml %s >i && grep -q '%s' i || { cat i >&2; exit 1; }", cases[k].settings,
+                       cases[k].words),
+                 0, "%s: %s", cases[k].settings, cases[k].words);
+  cr_expect_eq(shell("$DELBM info pile.yaml --set particles.density=1 >i && ! grep -q '^loads' i"), 0);
+  expect_notes("pile.yaml", "--set contact.stiffness=auto", "p");
 }
 
 /* Measured Strouhal numbers: src/cli/advice_sound.c. */

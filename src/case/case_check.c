@@ -7,6 +7,7 @@
 #include "case/case_units.h"
 #include "contact/law.h"
 #include "model/fill_grid.h"
+#include "sim/load.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -330,8 +331,7 @@ static void check_depth(struct draft *draft, const struct case_overlap *overlap)
 static double depth_of_impact(const struct draft *draft, const struct disc_spec *disc, double gap, double speed)
 {
   const struct scene *scene = &draft->scene;
-  const double density = disc->density > 0 ? disc->density : draft->density;
-  const double mass = disc_spec_area(disc) * (scene->fluid.none ? density : density + 1);
+  const double mass = load_mass(scene, disc);
   const double arrival = scene->fluid.none ? speed : speed * exp(-gap * disc->radius / mass);
   const struct contact_law law = contact_law_of(scene);
   double low = 0, high = 2 * disc->radius;
@@ -367,12 +367,12 @@ static void check_impact(struct draft *draft, size_t i)
 static bool check_depths(struct draft *draft, const struct tree_node *list, struct status *status)
 {
   struct case_overlaps found;
-  bool known = sides_known(draft) && draft_knows(draft, "domain.size") && draft->scene.contact.stiffness > 0;
+  const bool in_contact = draft_is_auto(draft, "contact.stiffness") || draft->scene.contact.stiffness > 0;
+  bool known = sides_known(draft) && draft_knows(draft, "domain.size") && in_contact;
   for (size_t i = 0; i < list->count; i++) known = known && disc_known(list, i);
   if (!known || case_errors_total(draft->errors) > 0) return true; /* wrong positions are reported first */
   const bool ok = case_overlaps_find(&draft->scene, list->count, &found, status);
   for (size_t k = 0; ok && k < found.count && !draft->scene.fluid.none; k++) check_depth(draft, &found.list[k]);
-  for (size_t i = 0; ok && i < list->count; i++) check_impact(draft, i);
   case_overlaps_clear(&found);
   return ok;
 }
@@ -481,4 +481,11 @@ bool case_check(struct draft *draft, struct status *status)
   check_shown(draft);
   check_density(draft);
   return check_discs(draft, status);
+}
+
+bool case_check_impacts(struct draft *draft)
+{
+  const struct scene *scene = &draft->scene;
+  for (size_t i = 0; scene->contact.stiffness > 0 && i < scene->particles.listed; i++) check_impact(draft, i);
+  return case_errors_total(draft->errors) == 0;
 }

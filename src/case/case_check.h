@@ -7,4 +7,7 @@
 /* Adds to draft->errors. Ignores keys that the table has refused. False only if memory runs out. */
 bool case_check(struct draft *draft, struct status *status);
 
+/* Listed discs that run into a side, at the stiffness of the complete scene. False with errors added. */
+bool case_check_impacts(struct draft *draft);
+
 #endif

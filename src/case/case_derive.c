@@ -1,7 +1,10 @@
 #include "case/case_derive.h"
 
+#include "case/case_overlaps.h"
 #include "case/case_query.h"
+#include "sim/load.h"
 
+#include <math.h>
 #include <string.h>
 
 static const double default_magic = 3.0 / 16.0;
@@ -86,4 +89,32 @@ void case_derive(struct draft *draft)
   derive_fill(draft);
   derive_zero_flux(draft);
   derive_shown(draft);
+}
+
+/* The stiffness that parts all overlaps at the start at the advised speed at most; INFINITY if there are none. */
+static bool find_parting_stiffness(const struct scene *scene, double *max, struct status *status)
+{
+  struct case_overlaps found;
+  const struct disc_spec *discs = scene->particles.discs;
+  const bool ok = case_overlaps_find(scene, scene->particles.count, &found, status);
+  *max = INFINITY;
+  for (size_t k = 0; ok && k < found.count; k++) {
+    const struct case_overlap *overlap = &found.list[k];
+    const struct disc_spec *other = case_overlap_is_with_side(overlap) ? NULL : &discs[overlap->b];
+    *max = fmin(*max, load_parting_stiffness(scene, &discs[overlap->a], other, overlap->depth));
+  }
+  case_overlaps_clear(&found);
+  return ok;
+}
+
+bool case_derive_stiffness(struct draft *draft, struct status *status)
+{
+  struct scene *scene = &draft->scene;
+  if (!draft_is_auto(draft, "contact.stiffness")) return true;
+  const struct loads loads = loads_of(scene);
+  double max = INFINITY;
+  const bool loaded = loads.at_rest.force > 0 || loads.impact.energy > 0;
+  if (loaded && !find_parting_stiffness(scene, &max, status)) return false;
+  load_set_stiffness(scene, &loads, max);
+  return true;
 }

@@ -7,4 +7,7 @@
 /* Completes the scene of a valid draft: rates, densities, fill, zero_flux. */
 void case_derive(struct draft *draft);
 
+/* contact.stiffness: auto, once the discs of particles.fill are there. Fails for lack of memory. */
+bool case_derive_stiffness(struct draft *draft, struct status *status);
+
 #endif

@@ -273,7 +273,7 @@ static bool finish(struct draft *draft, struct status *status)
   scene->title = copy_text(draft->title, status);
   if (!scene->title) return false;
   if (draft->kernel && !(scene->fluid.kernel = copy_text(draft->kernel, status))) return false;
-  return scene_fill(scene, status);
+  return scene_fill(scene, status) && case_derive_stiffness(draft, status);
 }
 
 /* False with errors recorded, or with *status filled if there are none. */
@@ -287,7 +287,8 @@ static bool read_draft(struct draft *draft, struct tree *tree, const struct yaml
   prepare_fluid(draft);
   case_units_read(draft);
   read_section(draft, &root, draft->root);
-  return case_check(draft, status) && case_errors_total(draft->errors) == 0 && finish(draft, status);
+  return case_check(draft, status) && case_errors_total(draft->errors) == 0 && finish(draft, status) &&
+         case_check_impacts(draft);
 }
 
 /* The case file of a path: the path, or case.yaml in a folder. */

@@ -26,6 +26,13 @@ bool draft_knows(const struct draft *draft, const char *path)
   return !node->refused && (found || !is_required(path));
 }
 
+bool draft_is_auto(const struct draft *draft, const char *path)
+{
+  const struct tree_node *node = tree_find(draft->root, path);
+  return node ? node->kind == TREE_SCALAR && strcmp(node->text, "auto") == 0
+              : strcmp(key_find(path)->fallback, "auto") == 0;
+}
+
 enum collision draft_collision(const struct draft *draft)
 {
   if (!draft_has(draft, "fluid.collision") && draft_has(draft, "fluid.rates.q")) return COLLISION_MRT;

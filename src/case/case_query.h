@@ -14,6 +14,9 @@ bool draft_requires(const struct draft *draft, const struct key *key);
 /* True if the value of the key is valid: allowed by the table, or the default. */
 bool draft_knows(const struct draft *draft, const char *path);
 
+/* True if the value of the key is `auto`, written or as the default. */
+bool draft_is_auto(const struct draft *draft, const char *path);
+
 /* fluid.collision of the case, or its default for the other keys. */
 enum collision draft_collision(const struct draft *draft);
 

@@ -290,6 +290,14 @@ static void format_component(const struct key *key, const unsigned char *field, 
   }
 }
 
+/* True for keys at which a stored zero is `auto`: the number 0 is not allowed. */
+static bool is_auto_if_zero(const struct key *key)
+{
+  struct range range;
+  parse_range(key->allowed, &range);
+  return key_is_automatic(key) && !in_range(&range, 0);
+}
+
 static void format_numbers(const struct key *key, const unsigned char *field, char text[VALUE_TEXT])
 {
   size_t count = components(key->kind), length = 0;
@@ -301,7 +309,7 @@ static void format_numbers(const struct key *key, const unsigned char *field, ch
   }
   if (count > 1) snprintf(text + length, VALUE_TEXT - length, "]");
   if (needs_unit(key)) snprintf(text + length, VALUE_TEXT - length, " %s", key->unit);
-  if (key_is_automatic(key) && strcmp(text, "0") == 0) snprintf(text, VALUE_TEXT, "auto");
+  if (is_auto_if_zero(key) && strcmp(text, "0") == 0) snprintf(text, VALUE_TEXT, "auto");
 }
 
 void value_format(const struct key *key, const void *owner, char text[VALUE_TEXT])

@@ -11,6 +11,7 @@
 #include "fluid/sweep.h"
 #include "sim/diagnostics.h"
 #include "sim/estimate.h"
+#include "sim/load.h"
 #include "sim/simulation.h"
 #include "sim/tuning.h"
 
@@ -241,14 +242,59 @@ static bool print_overlaps(const struct scene *scene, struct status *status)
   return ok;
 }
 
+/* The bodies of a load: "radius 5 on radius 3". */
+static void print_bodies(const struct load *load, const char *between)
+{
+  printf("radius %g %s ", load->radius[0], between);
+  if (isinf(load->radius[1]))
+    printf("a side");
+  else
+    printf("radius %g", load->radius[1]);
+}
+
+/* Prints the expected loads of contacts, the overlap under each, and the sub-steps that each needs. */
+static void print_loads(const struct scene *scene)
+{
+  const double many_substeps = 50;
+  const struct loads loads = loads_of(scene);
+  const char *before = "loads        ";
+  int substeps = 1;
+  if (loads.at_rest.force > 0) {
+    printf("%sat rest %.3g, ", before, loads.at_rest.force);
+    print_bodies(&loads.at_rest, "on");
+    printf(": overlap %.2g %% of the smaller radius\n", 100 * load_overlap(scene, &loads.at_rest));
+    before = "             ";
+  }
+  if (loads.impact.energy > 0) {
+    printf("%simpact at up to %.3g cells/step, ", before, loads.impact.speed);
+    print_bodies(&loads.impact, "against");
+    substeps = load_substeps(scene, &loads.impact);
+    printf(": overlap up to %.2g %%, about %d sub-step%s a step\n", 100 * load_overlap(scene, &loads.impact), substeps,
+           substeps == 1 ? "" : "s");
+  }
+  if (substeps > many_substeps)
+    printf(
+        "  note: so many sub-steps take longer than the fluid; better: contact.overlap >= %.2g, or contact.stiffness "
+        "<= %.2g\n",
+        fmin(0.1, scene->contact.overlap * substeps / many_substeps),
+        scene->contact.stiffness * pow(many_substeps / substeps, 2.5));
+}
+
 static void print_contacts(const struct scene *scene, const struct stages *stages)
 {
+  static const char *const sources[] = {[STIFFNESS_GIVEN] = "",
+                                        [STIFFNESS_AT_REST] = " (auto: load at rest)",
+                                        [STIFFNESS_IMPACT] = " (auto: impacts)",
+                                        [STIFFNESS_START] =
+                                            " (auto: overlaps at the start, which are to part at 0.1 cells/step)",
+                                        [STIFFNESS_SUBSTEPS] = " (auto: the number of sub-steps)",
+                                        [STIFFNESS_LEAST] = " (auto: the least)"};
   if (!stages->pairs && !stages->walls) return;
   char area[CHOICE], law[CHOICE];
-  printf("contacts     law %s, area by %s, stiffness %g, alpha %g, damping %g (%s)\n",
+  printf("contacts     law %s, area by %s, stiffness %g%s, alpha %g, damping %g (%s)\n",
          choice_of("contact.law", scene->contact.law, law), choice_of("contact.area", scene->contact.area, area),
-         scene->contact.stiffness, scene->contact.alpha, scene->contact.damping,
-         scene->contact.damping_form == DAMPING_CRITICAL ? "critical" : "as printed");
+         scene->contact.stiffness, sources[scene->contact.stiffness_source], scene->contact.alpha,
+         scene->contact.damping, scene->contact.damping_form == DAMPING_CRITICAL ? "critical" : "as printed");
   if (scene->contact.substeps > 0)
     printf("sub-steps    %d a step, as the case says\n", scene->contact.substeps);
   else if (stages->substeps)
@@ -261,6 +307,7 @@ static void print_contacts(const struct scene *scene, const struct stages *stage
            substeps_by_lens(scene));
   else
     printf("sub-steps    1: a contact lasts more than %g steps\n", scene->contact.steps_per_contact);
+  print_loads(scene);
 }
 
 static void print_plan(const struct scene *scene)

@@ -24,6 +24,16 @@ enum coupling_solve { SOLVE_IMPLICIT, SOLVE_EXPLICIT_AVERAGED };
 enum contact_area { AREA_LENS, AREA_CELLS };
 enum contact_search { SEARCH_GRID, SEARCH_LINKED_CELL };
 enum contact_damping { DAMPING_CRITICAL, DAMPING_PRINTED };
+/* Where contact.stiffness is from: the case; or `auto`, by the load at rest or in impacts, lowered for overlaps at the
+ * start or for the number of sub-steps, or raised to the least value. */
+enum stiffness_source {
+  STIFFNESS_GIVEN,
+  STIFFNESS_AT_REST,
+  STIFFNESS_IMPACT,
+  STIFFNESS_START,
+  STIFFNESS_SUBSTEPS,
+  STIFFNESS_LEAST
+};
 enum frame_quantity { FRAME_SPEED, FRAME_VORTICITY };
 enum frame_discs { FRAME_DISCS_PLAIN, FRAME_DISCS_HEIGHT, FRAME_DISCS_SPEED, FRAME_DISCS_RADIUS };
 
@@ -114,6 +124,8 @@ struct scene {
     enum contact_search search;
     double edge; /* of the linked cells; 0: one diameter */
     double stiffness;
+    enum stiffness_source stiffness_source;
+    double overlap; /* of the smaller radius, under the expected load, for `auto` */
     double alpha;       /* 0: of the radii of each pair */
     double damping;     /* damping ratio */
     double restitution; /* 0: given by the damping ratio */
