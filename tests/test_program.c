@@ -117,6 +117,26 @@ Test(program, a_diverging_run_stops_says_so_and_keeps_what_it_wrote)
                0);
 }
 
+Test(program, a_run_whose_discs_overlap_by_more_than_a_tenth_of_their_radius_ends_with_a_warning)
+{
+  shell_write("soft.yaml", "domain: {size: [40, 40]}\nfluid: {viscosity: 0.1}\n"
+                           "particles: {density: 3, gravity: [0, -0.002], discs: [{radius: 8, position: [20, 8]}]}\n"
+                           "run: {steps: 1500}\n");
+  cr_expect_eq(
+      shell("$DELBM run soft.yaml --quiet --out o >out 2>err && ! grep warning err && ! grep warning o/run.json"), 0);
+  cr_expect_eq(
+      shell(
+          "$DELBM run soft.yaml --quiet --out o --set contact.stiffness=0.25 >out 2>err && "
+          "grep -q '^delbm: warning: discs overlapped by up to [1-9][0-9] %% of the smaller radius, more than 10 %%' "
+          "err && "
+          "grep -q '\"warning\": \"discs overlapped by up to' o/run.json && "
+          "$DELBM info soft.yaml --set contact.stiffness=0.25 | grep -q 'note: at rest discs and the side .*or auto'"),
+      0);
+  cr_expect_eq(shell("$DELBM run soft.yaml --quiet --out o --set contact.stiffness=0 --set run.steps=100 >out 2>err && "
+                     "! grep warning err"),
+               0, "without contacts");
+}
+
 Test(program, a_run_faster_than_advised_ends_with_a_warning_that_run_json_has_too)
 {
   shell_write("lid.yaml", "domain: {size: [32, 32], top: {type: wall, velocity: [0.09, 0]}}\nfluid: {viscosity: 0.1}\n"

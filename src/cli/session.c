@@ -123,18 +123,25 @@ static const char *reason_of(const struct session_state *run)
                                                 : "interrupted by SIGINT";
 }
 
-enum { WARNING = 256 };
+enum { WARNING = 384 };
 
-/* Warning on the accuracy of the results; "" if there is none. */
-static void warn(const struct simulation_report *report, char warning[WARNING])
+/* Warnings on the accuracy of the results, joined by "; "; "" if there are none. */
+static void warn(const struct scene *scene, const struct simulation_report *report, char warning[WARNING])
 {
-  const double advised = sqrt(3) * scene_advised_speed;
+  const double advised = sqrt(3) * scene_advised_speed, max_overlap = 0.1;
+  const bool soft = report->max_overlap > max_overlap && scene->contact.stiffness > 0;
+  int length = 0;
   *warning = '\0';
   if (report->max_mach > advised)
-    snprintf(
+    length = snprintf(
         warning, WARNING,
         "fluid moved at up to Mach %.2g, above %.2g (%g cells/step): errors of compressibility grow with its square",
         report->max_mach, advised, scene_advised_speed);
+  if (soft)
+    snprintf(warning + length, WARNING - (size_t)length,
+             "%sdiscs overlapped by up to %.2g %% of the smaller radius, more than %g %%; better: a larger "
+             "contact.stiffness, or auto",
+             length > 0 ? "; " : "", 100 * report->max_overlap, 100 * max_overlap);
 }
 
 /* Closes the files and reports the outcome in run.json, on stdout and on stderr. */
@@ -151,7 +158,7 @@ static void conclude(struct session_state *run)
   summary.message = run->outcome == OUTCOME_DONE ? NULL : run->status.message;
   summary.reason = reason_of(run);
   char warning[WARNING];
-  warn(&summary.report, warning);
+  warn(run->scene, &summary.report, warning);
   summary.warning = *warning ? warning : NULL;
   if (!recorder_summarise(run->recorder, &summary, &status)) note_failure(run, &status);
   summary.outcome = run->outcome;
