@@ -291,10 +291,21 @@ static void print_contacts(const struct scene *scene, const struct stages *stage
                                         [STIFFNESS_LEAST] = " (auto: the least)"};
   if (!stages->pairs && !stages->walls) return;
   char area[CHOICE], law[CHOICE];
-  printf("contacts     law %s, area by %s, stiffness %g%s, alpha %g, damping %g (%s)\n",
-         choice_of("contact.law", scene->contact.law, law), choice_of("contact.area", scene->contact.area, area),
-         scene->contact.stiffness, sources[scene->contact.stiffness_source], scene->contact.alpha,
-         scene->contact.damping, scene->contact.damping_form == DAMPING_CRITICAL ? "critical" : "as printed");
+  printf("contacts     law %s, area by %s, stiffness %g%s, ", choice_of("contact.law", scene->contact.law, law),
+         choice_of("contact.area", scene->contact.area, area), scene->contact.stiffness,
+         sources[scene->contact.stiffness_source]);
+  if (scene->contact.alpha > 0)
+    printf("alpha %g, ", scene->contact.alpha);
+  else
+    printf("alpha of the radii, ");
+  if (scene->contact.restitution > 0)
+    printf("restitution %g\n", scene->contact.restitution);
+  else
+    printf("damping %g (%s)\n", scene->contact.damping,
+           scene->contact.damping_form == DAMPING_CRITICAL ? "critical" : "as printed");
+  if (scene->contact.friction > 0 || scene->contact.rolling_friction > 0)
+    printf("friction     %g, tangential stiffness %g of the normal; rolling friction %g\n", scene->contact.friction,
+           scene->contact.tangential_ratio, scene->contact.rolling_friction);
   if (scene->contact.substeps > 0)
     printf("sub-steps    %d a step, as the case says\n", scene->contact.substeps);
   else if (stages->substeps)
