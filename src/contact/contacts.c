@@ -169,7 +169,7 @@ static void select_near(struct contacts *c, const struct contact_pass *pass, con
     if (pass->has_cells && !side)
       t->cells_area[e] =
           cells_area(c->scene, d, t->a[e], t->b[e], c->scratch + (size_t)omp_get_thread_num() * c->scratch_size);
-    if (c->placed && !t->live[e]) {
+    if (c->placed && t->limited && !t->live[e]) {
       const double radius[2] = {t->radius[0][e], t->radius[1][e]};
       t->stored[e] = contact_energy(&c->law, radius, table_depth(t, c->scene, d, e));
     }
