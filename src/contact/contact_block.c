@@ -8,11 +8,17 @@
  * and the compliances c_n, c_t, c_r: separation, slip and rolling speed per impulse, with the response K of both bodies, hence
  * with the inertia of the coupled fluid.
  *
- * Normal impulse J_n = duration max(0, F_s + eta v) (law.h).
+ * Normal impulse (law.h). The damper acts on the mean of the speeds before and after the impulse, v - c J_n/2, with the compliance
+ * c = 1/m_a + 1/m_b of the discs alone. With S and D, the integrals of spring force and eta over the duration,
+ *   J_n = max(0, (S + D v)/(1 + D c/2)),  S = duration F_s, D = duration eta.
+ * The first impulse of a contact, which began at the time delta/v before, is integrated from there to h/2 after, at the speed v:
+ * with delta_1 = delta + v h/2 and t = delta_1/v, for F_s ~ delta^p,
+ *   S = F_s(delta_1) t/(p + 1),  D = eta(delta_1) t, by rate (law.h) 2/(p + 1) times this.
+ * With S and D as for other impulses the restitution would be up to 10 % off, since the damper's force jumps when a contact begins.
  *
  * Friction (Cundall & Strack 1979): a spring of force F and stiffness k_t = tangential_ratio dF_s/d delta, with a damper
  * eta_t = sqrt(tangential_ratio) eta. While the overlap grows F' = F + k_t u dt; when k_t falls, F is reduced in proportion, so
- * that the spring's energy F^2/(2 k_t) never grows by a change of k_t. Coulomb: |F + eta_t u| <= mu F_n; beyond this, the force is
+ * that the spring's energy F^2/(2 k_t) never grows by a change of k_t. The damper acts on the mean slip speed, as above. Coulomb: |F + eta_t u| <= mu F_n; beyond this, the force is
  * mu F_n, and F at most that. F turns with n, since t does.
  *
  * Rolling friction (Ai, Chen, Rotter & Ooi 2011, model C): the same spring and damper for the torque, with the rolling speed r
@@ -126,12 +132,14 @@ struct lanes {
   uint8_t entry[BLOCK]; /* counted from the first of the block */
   struct body_pairs pairs;
   struct body_overlaps overlaps;
-  double strength[BLOCK], damper[BLOCK], touch[BLOCK];
+  double strength[BLOCK], damper[BLOCK], inverse_mass[BLOCK], touch[BLOCK];
   double vx[BLOCK], vy[BLOCK], ax[BLOCK], ay[BLOCK]; /* relative velocity, relative change of velocity by dV */
   double xx[BLOCK], xy[BLOCK], yy[BLOCK];            /* sum of both K */
   double omega[2][BLOCK], domega[2][BLOCK], xw[2][BLOCK], yw[2][BLOCK], ww[2][BLOCK]; /* if torques count */
   double approach[BLOCK], compliance[BLOCK], mean[BLOCK];
-  double force[BLOCK], stiffness[BLOCK], eta[BLOCK], normal[BLOCK];
+  double stiffness[BLOCK], eta[BLOCK];
+  double moved[BLOCK];                 /* time since the last sub-step, or since the contact began */
+  double spring[BLOCK], normal[BLOCK]; /* impulses: of the spring alone, and J_n */
 };
 
 /* Element k of the relative motion of discs a and b. */
@@ -188,6 +196,7 @@ static inline void load(const struct contact_pass *p, size_t block, bool spin, b
   const size_t first = table_first(block);
   const double *restrict ra = t->radius[0] + first, *restrict rb = t->radius[1] + first;
   const double *restrict strength = t->strength + first, *restrict damper = t->damper + first;
+  const double *restrict inverse_mass = t->inverse_mass + first;
   const uint32_t *restrict all_a = t->a + first, *restrict all_b = t->b + first;
   const struct disc_motions at = p->at;
   uint32_t a[BLOCK], b[BLOCK];
@@ -205,6 +214,7 @@ static inline void load(const struct contact_pass *p, size_t block, bool spin, b
     l->pairs.radius[1][k] = rb[e];
     l->strength[k] = strength[e];
     l->damper[k] = damper[e];
+    l->inverse_mass[k] = inverse_mass[e];
   }
   for (int k = 0; l->sides && k < l->n; k++) {
     place_side(p->scene, at.x, at.y, a[k], b[k], &l->pairs, k);
@@ -280,17 +290,6 @@ static inline double reduced_radius(const struct lanes *l, int k)
   return 1 / (1 / l->pairs.radius[0][k] + 1 / l->pairs.radius[1][k]);
 }
 
-/* Damping coefficients from stiffnesses. */
-static void find_dampers(const struct contact_pass *p, const double *restrict stiffness, struct lanes *l)
-{
-  if (!p->law->by_rate) {
-    memcpy(l->eta, l->damper, (size_t)l->n * sizeof *l->eta);
-    return;
-  }
-#pragma omp simd
-  for (int k = 0; k < l->n; k++) l->eta[k] = l->damper[k] * sqrt(stiffness[k]);
-}
-
 /* The largest compliance of a contact per normal stiffness. */
 static inline void find_softest(const struct contact_pass *p, const struct lanes *l, double *restrict compliance)
 {
@@ -306,18 +305,17 @@ static inline __attribute__((always_inline)) void find_rates(const struct contac
                                                              enum contact_spring_law law, struct lanes *l,
                                                              struct contact_rates *max)
 {
-  double softest[BLOCK], stiffness[BLOCK], spring[BLOCK], damper[BLOCK];
+  const bool by_rate = p->law->by_rate;
+  double softest[BLOCK], spring[BLOCK], damper[BLOCK];
   memcpy(softest, l->compliance, sizeof softest);
   if (spin) find_softest(p, l, softest);
 #pragma omp simd
   for (int k = 0; k < l->n; k++) {
     const double depth = max_of(0, l->overlaps.depth[k]) + max_of(0, l->approach[k]);
-    stiffness[k] = spring_max_stiffness(law, l->strength[k], depth, reduced_radius(l, k));
-    spring[k] = stiffness[k] * softest[k];
+    const double stiffness = spring_max_stiffness(law, l->strength[k], depth, reduced_radius(l, k));
+    spring[k] = stiffness * softest[k];
+    damper[k] = l->damper[k] * (by_rate ? sqrt(stiffness) : 1) * l->compliance[k];
   }
-  find_dampers(p, stiffness, l);
-#pragma omp simd
-  for (int k = 0; k < l->n; k++) damper[k] = l->eta[k] * l->compliance[k];
   max->any = true;
   max->spring = max_of(max->spring, largest_of(spring, l->n));
   max->damper = max_of(max->damper, largest_of(damper, l->n));
@@ -344,26 +342,29 @@ static void KERNEL(rates)(const struct contact_pass *p, size_t block, struct con
   }
 }
 
-static inline __attribute__((always_inline)) void find_springs(const struct contact_pass *p,
-                                                               enum contact_spring_law law, struct lanes *l)
+/* Normal impulses of springs and dampers. */
+static inline __attribute__((always_inline)) void find_normal(const struct contact_pass *p, enum contact_spring_law law,
+                                                              struct lanes *l)
 {
+  const bool by_rate = p->law->by_rate, can_begin = !p->has_cells || l->sides;
+  const double duration = p->duration, moved = p->moved, half = 0.5 * p->h, exponent = spring_exponent(law);
 #pragma omp simd
   for (int k = 0; k < l->n; k++) {
-    const double depth = max_of(0, l->overlaps.depth[k]);
-    l->force[k] = spring_force(law, l->strength[k], depth, l->overlaps.area[k]);
-    l->stiffness[k] = spring_stiffness(law, l->strength[k], depth, l->overlaps.chord[k]);
-  }
-  find_dampers(p, l->stiffness, l);
-}
-
-/* Normal impulses. */
-static void find_normal(const struct contact_pass *p, struct lanes *l)
-{
-  const double duration = p->duration;
-#pragma omp simd
-  for (int k = 0; k < l->n; k++) {
-    const double force = max_of(0, l->force[k] + l->eta[k] * l->approach[k]);
-    l->normal[k] = l->touch[k] > 0 ? duration * force : 0;
+    const double v = l->approach[k], depth = max_of(0, l->overlaps.depth[k]), strength = l->strength[k];
+    const double stiffness = spring_stiffness(law, strength, depth, l->overlaps.chord[k]);
+    const double force = spring_force(law, strength, depth, l->overlaps.area[k]);
+    const double eta = l->damper[k] * (by_rate ? sqrt(stiffness) : 1);
+    const double first = depth + half * v, time = first / v; /* of the first impulse of a contact */
+    const double first_force = spring_small_force(law, strength, max_of(0, first), reduced_radius(l, k));
+    const double first_eta = l->damper[k] * (by_rate ? sqrt(exponent * first_force / first) * 2 / (exponent + 1) : 1);
+    const bool begins = can_begin && depth <= v * moved;
+    l->eta[k] = eta;
+    l->stiffness[k] = stiffness;
+    l->moved[k] = begins ? depth / v : moved;
+    l->spring[k] = begins ? first_force * time / (exponent + 1) : duration * force;
+    const double damped = begins ? first_eta * time : duration * eta;
+    const double impulse = (l->spring[k] + damped * v) / (1 + 0.5 * damped * l->inverse_mass[k]);
+    l->normal[k] = l->touch[k] > 0 ? max_of(0, impulse) : 0;
   }
 }
 
@@ -388,7 +389,7 @@ static void limit_normal(const struct contact_pass *p, size_t block, struct lane
     const bool touches = l->touch[k] > 0;
     stored[k] = touches ? left : 0;
     l->normal[k] = min_of(l->normal[k], max);
-    spring_impulse[k] = touches ? min_of(duration * l->force[k], max) : 0;
+    spring_impulse[k] = touches ? min_of(l->spring[k], max) : 0;
   }
   for (int k = 0; k < l->count; k++) {
     const size_t e = first + l->entry[k];
@@ -404,10 +405,12 @@ struct slider {
   double force, stiffness;
 };
 
-static inline double slide(struct slider *spring, double stiffness, double eta, double speed, double moved, double max)
+/* `share`: duration times compliance, with which the damper acts on the mean speed. */
+static inline double slide(struct slider *spring, double stiffness, double eta, double speed, double moved,
+                           double share, double max)
 {
   const double kept = spring->stiffness > stiffness ? spring->force * (stiffness / spring->stiffness) : spring->force;
-  const double force = kept + stiffness * speed * moved, wanted = force + eta * speed;
+  const double force = kept + stiffness * speed * moved, wanted = (force + eta * speed) / (1 + 0.5 * share * eta);
   spring->stiffness = stiffness;
   spring->force = max_of(-max, min_of(max, force));
   return max_of(-max, min_of(max, wanted));
@@ -420,9 +423,10 @@ static inline __attribute__((always_inline)) void find_friction(const struct con
   const struct contact_table *t = p->table;
   const struct body_overlaps *o = &l->overlaps;
   const size_t first = table_first(block);
-  const double ratio = p->law->tangential_ratio, root = sqrt(ratio), h = p->h, duration = p->duration, moved = p->moved;
+  const double ratio = p->law->tangential_ratio, root = sqrt(ratio), h = p->h, duration = p->duration;
   double force[BLOCK], force_stiffness[BLOCK], moment[BLOCK], moment_stiffness[BLOCK], friction[BLOCK], arm[BLOCK];
-  double rolling_damper[BLOCK], fx[BLOCK], fy[BLOCK], ta[BLOCK], tb[BLOCK];
+  double rolling_damper[BLOCK], slip_compliance[BLOCK], roll_compliance[BLOCK], fx[BLOCK], fy[BLOCK], ta[BLOCK],
+      tb[BLOCK];
   for (int k = 0; k < l->n; k++) {
     const size_t e = first + l->entry[k];
     force[k] = t->shear[e];
@@ -432,6 +436,8 @@ static inline __attribute__((always_inline)) void find_friction(const struct con
     friction[k] = t->friction[e];
     arm[k] = t->max_moment[e];
     rolling_damper[k] = t->rolling_damper[e];
+    slip_compliance[k] = t->slip_compliance[e];
+    roll_compliance[k] = t->roll_compliance[e];
   }
 #pragma omp simd
   for (int k = 0; k < l->n; k++) {
@@ -448,8 +454,8 @@ static inline __attribute__((always_inline)) void find_friction(const struct con
       kr = min_of(kr, 1 / (cr * h * h));
       er = min_of(er, 1 / (2 * cr * h));
     }
-    const double along = slide(&shear, kt, et, slip, moved, friction[k] * normal);
-    const double torque = slide(&turn, kr, er, roll, moved, arm[k] * normal);
+    const double along = slide(&shear, kt, et, slip, l->moved[k], duration * slip_compliance[k], friction[k] * normal);
+    const double torque = slide(&turn, kr, er, roll, l->moved[k], duration * roll_compliance[k], arm[k] * normal);
     const double jt = acts ? duration * along : 0, jr = acts ? duration * torque : 0;
     force[k] = acts ? shear.force : 0;
     force_stiffness[k] = acts ? shear.stiffness : 0;
@@ -510,8 +516,7 @@ static inline __attribute__((always_inline)) void find_impulses(const struct con
   struct lanes l;
   load(p, block, spin, limited, &l);
   find_overlaps(p, block, spin, law == SPRING_OVERLAP, &l);
-  find_springs(p, law, &l);
-  find_normal(p, &l);
+  find_normal(p, law, &l);
   if (limited) {
     find_compliances(p, spin, &l);
     limit_normal(p, block, &l);

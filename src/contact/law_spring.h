@@ -19,7 +19,19 @@ static inline double spring_stiffness(enum contact_spring_law law, double streng
   return strength * (law == SPRING_OVERLAP ? chord : law == SPRING_HERTZ ? 1.5 * sqrt(depth) : 1);
 }
 
-/* Upper bound of this derivative from the overlap alone; `reduced_radius` is R*. The chord is at most 2 sqrt(2 R*
+/* The force as strength delta^p in the limit of small overlap: the exponent p, and the force. `reduced_radius` is R*. */
+static inline double spring_exponent(enum contact_spring_law law)
+{
+  return law == SPRING_LINEAR ? 1 : 1.5;
+}
+
+static inline double spring_small_force(enum contact_spring_law law, double strength, double depth,
+                                        double reduced_radius)
+{
+  return spring_force(law, strength, depth, 4. / 3 * sqrt(2 * reduced_radius * depth) * depth);
+}
+
+/* Upper bound of this derivative from the overlap alone. The chord is at most 2 sqrt(2 R*
  * delta). */
 static inline double spring_max_stiffness(enum contact_spring_law law, double strength, double depth,
                                           double reduced_radius)

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { DOUBLE_ARRAYS = 20 };
+enum { DOUBLE_ARRAYS = 23 };
 
 bool table_create(struct contact_table *t, size_t discs, struct status *status)
 {
@@ -41,6 +41,9 @@ static void carve(struct contact_table *t, size_t entries)
                                            &t->damper,
                                            &t->friction,
                                            &t->max_moment,
+                                           &t->inverse_mass,
+                                           &t->slip_compliance,
+                                           &t->roll_compliance,
                                            &t->rolling_damper,
                                            &t->stored,
                                            &t->impulse,
@@ -212,11 +215,16 @@ void table_fill(struct contact_table *t, const struct scene *scene, const struct
     const double reduced = 1 / (1 / radius[0] + 1 / radius[1]);
     for (int end = 0; end < 2; end++) t->radius[end][e] = radius[end];
     t->strength[e] = contact_strength(law, radius);
-    t->damper[e] = contact_damping(law, inverse_mass(d, a) + (side ? 0 : inverse_mass(d, b)), 1);
+    const double mass = inverse_mass(d, a) + (side ? 0 : inverse_mass(d, b));
+    const double turn = inverse_inertia(d, a) + (side ? 0 : inverse_inertia(d, b));
+    t->damper[e] = contact_damping(law, mass, 1);
+    t->inverse_mass[e] = mass;
+    t->slip_compliance[e] = mass + radius[0] * radius[0] * inverse_inertia(d, a) +
+                            (side ? 0 : radius[1] * radius[1] * inverse_inertia(d, b));
+    t->roll_compliance[e] = turn;
     t->friction[e] = is_rough(scene, b) ? law->friction : 0;
     t->max_moment[e] = is_rough(scene, b) ? law->rolling_friction * reduced : 0;
-    t->rolling_damper[e] =
-        2 * law->damping * t->max_moment[e] * sqrt(3 / (inverse_inertia(d, a) + (side ? 0 : inverse_inertia(d, b))));
+    t->rolling_damper[e] = 2 * law->damping * t->max_moment[e] * sqrt(3 / turn);
   }
 }
 

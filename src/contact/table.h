@@ -19,12 +19,14 @@ struct contact_table {
   bool limited;               /* sub-steps may be too few for the forces: with a fixed number, or areas by cells */
 
   /* constants, [entry] */
-  uint32_t *a, *b;        /* discs; b from contact_sides on: a side */
-  double *radius[2];      /* a side: infinite */
-  double *strength;       /* of the spring (law_spring.h) */
-  double *damper;         /* eta; by rate: eta over the root of dF_s/d delta */
-  double *friction;       /* has_spin: Coulomb's coefficient; 0 at sides that are not walls */
-  double *max_moment;     /* has_spin: largest rolling torque over F_n */
+  uint32_t *a, *b;                           /* discs; b from contact_sides on: a side */
+  double *radius[2];                         /* a side: infinite */
+  double *strength;                          /* of the spring (law_spring.h) */
+  double *damper;                            /* eta; by rate: eta over the root of dF_s/d delta */
+  double *inverse_mass;                      /* of relative motion, without fluid */
+  double *slip_compliance, *roll_compliance; /* has_spin: c_t and c_r without fluid */
+  double *friction;                          /* has_spin: Coulomb's coefficient; 0 at sides that are not walls */
+  double *max_moment;                        /* has_spin: largest rolling torque over F_n */
   double *rolling_damper; /* has_spin: damping coefficient of rolling over the root of dF_s/d delta */
 
   /* states, [entry]: struct contact_state */
