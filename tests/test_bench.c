@@ -3,6 +3,8 @@
 #include "json.h"
 #include "shell.h"
 
+#include <math.h>
+
 TestSuite(bench, .init = shell_enter, .fini = shell_leave, .timeout = 900 * SLOWNESS);
 
 enum { NAMES = 64 };
@@ -79,4 +81,55 @@ Test(bench, names_that_are_none_run_nothing)
 {
   cr_expect_eq(shell("$DELBM bench overlap swep --quick >out 2>err"), 2);
   cr_expect_eq(shell("! test -s out && grep -q \"unknown benchmark 'swep'\" err"), 0);
+}
+
+static bool has_python(void)
+{
+  return shell("python3 -c '' >/dev/null 2>&1") == 0;
+}
+
+Test(bench, the_comparison_with_lammps_is_skipped_with_words_where_there_is_none)
+{
+  if (!has_python()) cr_skip("no python3");
+  cr_expect_eq(
+      shell("PATH=/none \"$(python3 -c 'import sys; print(sys.executable)')\" %s --program $DELBM >out 2>err", COMPARE),
+      77);
+  cr_expect_eq(shell("grep -q '^skipped: no lmp and no mpirun' out && ! test -s err"), 0);
+}
+
+/* The number that an awk program prints for a file. */
+static double number(const char *file, const char *program)
+{
+  double value = NAN;
+  cr_assert_eq(shell("awk -F '[ ,]' '%s' %s >number", program, file), 0);
+  FILE *answer = fopen("number", "r");
+  cr_assert(answer && fscanf(answer, "%lf", &value) == 1, "%s: %s prints no number", file, program);
+  fclose(answer);
+  return value;
+}
+
+/* Two discs, and a disc and a side, that overlap by 0.1 cells and approach at 0.02 cells a step. The first impulse of a run
+ * lasts half a step. */
+Test(bench, lammps_gets_every_disc_and_the_spring_and_damper_of_the_law)
+{
+  if (!has_python()) cr_skip("no python3");
+  const double mass = 1.01 * M_PI * 25, overlap = 0.1, speed = 0.02;
+  cr_assert_eq(shell("python3 %s --write in --program $DELBM", COMPARE), 0);
+  cr_expect_eq(number("in/start.data", "/^Velocities/ {exit} NF == 7 {n++} END {print n}"), 400);
+  shell_write("case.yaml", "domain: {size: [100, 100]}\nfluid: none\n"
+                           "particles:\n  density: 1.01\n  discs:\n"
+                           "    - {radius: 5, position: [40, 50], velocity: [0.02, 0]}\n"
+                           "    - {radius: 5, position: [49.9, 50]}\n"
+                           "    - {radius: 5, position: [95.1, 20], velocity: [0.02, 0]}\n"
+                           "contact: {law: linear, stiffness: 25, alpha: 0.3, damping: 0.34, substeps: 1}\n"
+                           "run: {steps: 1}\noutput: {every: 1}\n");
+  cr_assert_eq(shell("$DELBM run case.yaml --out out --quiet >log 2>&1"), 0);
+  const double pair = 2 * number("out/particles.csv", "$1 == 1 && $2 == 1 {print $12}");
+  const double side = -2 * number("out/particles.csv", "$1 == 1 && $2 == 2 {print $12}");
+  const double pair_law = number("in/in.lammps", "/^pair_style/ {print $3}") * overlap +
+                          number("in/in.lammps", "/^pair_style/ {print $5}") * mass / 2 * speed;
+  const double side_law = number("in/in.lammps", "/xplane/ {print $6}") * overlap +
+                          number("in/in.lammps", "/xplane/ {print $8}") * mass * speed;
+  cr_expect_lt(fabs(pair / pair_law - 1), 1e-6, "pair: %.9g, for LAMMPS %.9g", pair, pair_law);
+  cr_expect_lt(fabs(side / side_law - 1), 1e-6, "side: %.9g, for LAMMPS %.9g", side, side_law);
 }
