@@ -36,6 +36,7 @@ struct scene scene_box(int nx, int ny, double viscosity, enum sides sides)
   scene.fluid.viscosity = viscosity;
   scene_use_adaptive(&scene);
   scene.coupling.form = FORM_MIDPOINT;
+  scene.coupling.hydraulic_radius = 1;
   scene.contact.stiffness = 0.25;
   scene.contact.overlap = 0.01;
   scene.contact.alpha = 0.3;

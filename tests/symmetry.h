@@ -29,7 +29,7 @@ struct symmetric_run {
 
 /* Runs the scene and its images, and expects of each the scene's density, velocity, vorticity, occupation, and of
  * discs the place, angle, velocity, force and torque, within 1e-12 in double precision and 1e-5 in single precision.
- * Forces and torques are compared as the changes, in one step, of velocity and rim speed of the displaced fluid. */
+ * Forces and torques are compared as the changes, in one step, of velocity and rim speed of the fluid that fills a disc. */
 void expect_symmetric(const struct scene *scene, const struct symmetric_run *run);
 
 #endif

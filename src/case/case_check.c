@@ -236,6 +236,31 @@ static bool disc_known(const struct tree_node *list, size_t i)
   return !list->entries[i].value->refused;
 }
 
+/* Radius of the smallest disc that has passed the checks of the table; INFINITY without one. */
+static double smallest_radius(const struct draft *draft)
+{
+  const struct scene *scene = &draft->scene;
+  const struct tree_node *list = tree_find(draft->root, "particles.discs");
+  const bool fill = scene->particles.fill.present && draft_knows(draft, "particles.fill.radius");
+  double smallest = fill ? scene->particles.fill.radius : INFINITY;
+  for (size_t i = 0; list && list->kind == TREE_LIST && i < list->count; i++)
+    if (disc_known(list, i)) smallest = fmin(smallest, scene->particles.discs[i].radius);
+  return smallest;
+}
+
+/* Areas by cells are those of the fluid's cells; R_h has the lower bound of the key of a radius. */
+static void check_hydraulic_radius(struct draft *draft)
+{
+  static const char path[] = "coupling.hydraulic_radius";
+  const double min_radius = 0.5, factor = draft->scene.coupling.hydraulic_radius, smallest = smallest_radius(draft);
+  if (!draft_knows(draft, path) || factor == 1) return;
+  if (draft->scene.contact.area == AREA_CELLS)
+    draft_refuse(draft, path, "1 with contact.area: cells, whose overlaps are those of the cells of the fluid");
+  if (factor * smallest < min_radius)
+    draft_refuse(draft, path, "a part that leaves each disc at least %g cells of radius, not %.3g of %g", min_radius,
+                 factor * smallest, smallest);
+}
+
 static void check_disc(struct draft *draft, size_t i)
 {
   const struct disc_spec *disc = &draft->scene.particles.discs[i];
@@ -327,12 +352,12 @@ static void check_depth(struct draft *draft, const struct case_overlap *overlap)
 }
 
 /* Largest overlap with a side of a disc at distance `gap` with this speed, at most its diameter. Kinetic energy on arrival
- * (in fluid: drag coefficient 1, mass of the fluid inside included) equals the energy of the contact's spring. */
+ * (in fluid: drag coefficient 1 of R_h, mass of the fluid inside included) equals the energy of the contact's spring. */
 static double depth_of_impact(const struct draft *draft, const struct disc_spec *disc, double gap, double speed)
 {
   const struct scene *scene = &draft->scene;
-  const double mass = load_mass(scene, disc);
-  const double arrival = scene->fluid.none ? speed : speed * exp(-gap * disc->radius / mass);
+  const double mass = load_mass(scene, disc), hydraulic = scene_hydraulic_radius(scene, disc);
+  const double arrival = scene->fluid.none ? speed : speed * exp(-gap * hydraulic / mass);
   const struct contact_law law = contact_law_of(scene);
   double low = 0, high = 2 * disc->radius;
   for (int k = 0; k < 40; k++) {
@@ -478,6 +503,7 @@ bool case_check(struct draft *draft, struct status *status)
   check_law(draft);
   check_restitution(draft);
   check_fill(draft);
+  check_hydraulic_radius(draft);
   check_shown(draft);
   check_density(draft);
   return check_discs(draft, status);

@@ -29,16 +29,17 @@ static void advise_solve(const struct scene *scene)
         disc, scene->particles.discs[disc].density);
 }
 
-/* At small viscosity the fluid inside a disc of a few cells has less mass than pi R^2, on which buoyancy and inertia
- * are based: the effective inertia of a light disc is negative. */
+/* At small viscosity the fluid inside a disc of a few cells has less mass than pi R_h^2, on which the inertia is based:
+ * the effective inertia of a light disc is negative. */
 static void advise_light(const struct scene *scene)
 {
   const double viscosity = scene->fluid.viscosity;
   if (scene->coupling.solve != SOLVE_IMPLICIT) return;
   for (size_t i = 0; i < scene->particles.count; i++) {
     const struct disc_spec *disc = &scene->particles.discs[i];
-    const bool small = disc->radius < 0.7 || (disc->radius < 1.8 && viscosity <= 0.1);
-    if (disc->motion != DISC_FREE || disc->density > 0.97 || !small) continue;
+    const double radius = scene_hydraulic_radius(scene, disc), part = radius / disc->radius;
+    const bool small = radius < 0.7 || (radius < 1.8 && viscosity <= 0.1);
+    if (disc->motion != DISC_FREE || disc->density > 0.97 * part * part || !small) continue;
     printf("  note: disc %zu (radius %g, density %g) is so small and light that, at viscosity %g, it may gain speed by "
            "itself until the run diverges; a radius of 2 or more does not (bench/STABILITY.md)\n",
            i, disc->radius, disc->density, viscosity);
@@ -50,7 +51,8 @@ static void advise_light(const struct scene *scene)
 static void advise_form(const struct scene *scene)
 {
   double smallest = INFINITY;
-  for (size_t i = 0; i < scene->particles.count; i++) smallest = fmin(smallest, scene->particles.discs[i].radius);
+  for (size_t i = 0; i < scene->particles.count; i++)
+    smallest = fmin(smallest, scene_hydraulic_radius(scene, &scene->particles.discs[i]));
   if (scene->coupling.form == FORM_UNIFIED && scene->fluid.viscosity >= 0.05 && smallest <= 10)
     printf("  note: form: unified has 5 %% too little drag on discs of R = 5 at viscosity 0.05 and 11 %% at 1/6; form: "
            "midpoint is within 2 %% at any viscosity (bench/README.md, drag)\n");
@@ -62,7 +64,7 @@ static bool is_under_moving_side(const struct scene *scene, const struct disc_sp
   for (enum side_name name = 0; name < SIDE_COUNT; name++) {
     const struct side *side = &scene->domain.side[name];
     if (side->type == SIDE_WALL && hypot(side->velocity[0], side->velocity[1]) > 0 &&
-        scene_distance_to_side(scene, name, disc->position) < disc->radius)
+        scene_distance_to_side(scene, name, disc->position) < scene_hydraulic_radius(scene, disc))
       return true;
   }
   return false;
@@ -78,7 +80,7 @@ static void advise_form_inside(const struct scene *scene)
   if (scene->coupling.form == FORM_MIDPOINT) return;
   for (size_t i = 0; i < scene->particles.count; i++) {
     const struct disc_spec *disc = &scene->particles.discs[i];
-    const double rim = disc->radius * fabs(disc->spin);
+    const double rim = scene_hydraulic_radius(scene, disc) * fabs(disc->spin);
     free_discs += disc->motion == DISC_FREE;
     if (disc->motion == DISC_FREE || !(owen ? rim > 0 || is_under_moving_side(scene, disc) : rim > min_rim)) continue;
     printf("  note: with form: %s the fluid inside disc %zu, which %s, accelerates until the run diverges; form: "

@@ -54,9 +54,10 @@ void advise_sound(const struct scene *scene)
     if (!reflects(&across[0]) || !reflects(&across[1]) || scene->domain.size[along] >= short_box * height) continue;
     for (size_t i = 0; i < scene->particles.count; i++) {
       const struct disc_spec *disc = &scene->particles.discs[i];
-      const double reynolds = 2 * disc->radius * speed / scene->fluid.viscosity;
+      const double diameter = 2 * scene_hydraulic_radius(scene, disc);
+      const double reynolds = diameter * speed / scene->fluid.viscosity;
       if (disc->motion != DISC_FIXED || reynolds <= min_reynolds) continue;
-      const double shedding = strouhal(reynolds) * speed / (2 * disc->radius);
+      const double shedding = strouhal(reynolds) * speed / diameter;
       if (tone > near_factor * shedding || shedding > near_factor * tone) continue;
       printf("  note: sound between the %s sides rings %.3g times a step, and disc %zu sheds vortices about %.3g times "
              "(Strouhal number %.2g): in so short a box the sound may spoil lift and Strouhal number; better: "

@@ -209,11 +209,16 @@ static void print_discs(const struct scene *scene)
     area += disc_spec_area(disc);
     motions[disc->motion]++;
   }
-  const double box = (double)scene->domain.size[0] * scene->domain.size[1];
+  const double box = (double)scene->domain.size[0] * scene->domain.size[1], part = scene->coupling.hydraulic_radius;
   printf("discs        %zu (%zu free, %zu fixed, %zu driven), radius %g to %g, solid fraction %.4g\n",
          scene->particles.count, motions[DISC_FREE], motions[DISC_FIXED], motions[DISC_DRIVEN], smallest, largest,
          area / box);
-  if (smallest < 2) printf("  note: radius below 2 cells; forces on so small a disc are rough; better: radius >= 2\n");
+  if (part < 1)
+    printf("hydraulic    radius %g to %g for the fluid, solid fraction %.4g\n", part * smallest, part * largest,
+           part * part * area / box);
+  if (part * smallest < 2)
+    printf("  note: %sradius below 2 cells; forces on so small a disc are rough; better: radius >= %.2g\n",
+           part < 1 ? "hydraulic " : "", 2 / part);
   if (!scene->fluid.none)
     printf("coupling     %s, %s\n", forms[scene->coupling.form],
            choice_of("coupling.solve", scene->coupling.solve, solve));

@@ -8,6 +8,14 @@
 
 enum { RECENT = 512 }; /* size of the cache of tested pairs of a band */
 
+/* Largest R - R_h. */
+static double largest_rim(const struct discs *d)
+{
+  double largest = 0;
+  for (size_t i = 0; i < d->count; i++) largest = fmax(largest, d->radius[i] - d->hydraulic[i].radius);
+  return largest;
+}
+
 bool pairs_create(struct pair_list *list, const struct scene *scene, const struct discs *discs, bool searches, double l,
                   struct status *status)
 {
@@ -16,6 +24,7 @@ bool pairs_create(struct pair_list *list, const struct scene *scene, const struc
                              .uses_linked_cells = searches && scene->contact.search == SEARCH_LINKED_CELL,
                              .searches = searches,
                              .stale = true};
+  list->cells = (int)ceil(list->within + 2 * largest_rim(discs));
   for (int axis = 0; axis < 2; axis++) {
     list->size[axis] = scene->domain.size[axis];
     list->periodic[axis] = scene_is_periodic(scene, axis);
@@ -49,7 +58,7 @@ struct search {
   const struct discs *discs;
   struct pair_batch *batch;
   double within;
-  int cells;                  /* largest distance of the runs of a pair, in rows and in columns */
+  int cells;
   struct pair recent[RECENT]; /* cache of tested pairs: most pairs appear in several rows */
 };
 
@@ -112,11 +121,8 @@ static bool search_band(struct search *s, int band, struct status *status)
 static bool search_grid(struct pair_list *list, size_t band, const struct occupation *o, const struct discs *d,
                         struct status *status)
 {
-  struct search s = {.occupation = o,
-                     .discs = d,
-                     .batch = &list->batches[band],
-                     .within = list->within,
-                     .cells = (int)ceil(list->within)};
+  struct search s = {
+      .occupation = o, .discs = d, .batch = &list->batches[band], .within = list->within, .cells = list->cells};
   return search_band(&s, (int)band, status);
 }
 

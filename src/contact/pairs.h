@@ -6,7 +6,8 @@
  * again, and results are independent.
  *
  * `search: grid`, the paper's method: from the runs of painted rows; two discs with a gap below g have cells at most
- * ceil(g) rows and columns apart. `search: linked-cell`: from linked cells (linked_cell.h). */
+ * ceil(g + r) rows and columns apart, r the sum of R - R_h of both (discs.h), since R_h is painted.
+ * `search: linked-cell`: from linked cells (linked_cell.h). */
 #ifndef DELBM_CONTACT_PAIRS_H
 #define DELBM_CONTACT_PAIRS_H
 
@@ -21,6 +22,7 @@ struct pair_list {
   size_t count, capacity;
 
   double within; /* l + margin */
+  int cells;     /* of search: grid, largest distance of the runs of a pair, in rows and in columns */
   int size[2];   /* of the box */
   bool periodic[2];
   double *x, *y;                    /* [disc] at the construction */

@@ -10,7 +10,8 @@
  *   M =  | 0     M0    M1x |
  *        | -M1y  M1x   M2  |
  * The sweep then imposes the new velocity and needs no reduction. m_f and I_f, mass and moment of inertia of the
- * displaced fluid, are subtracted because the fluid inside the disc moves with the disc and is counted as fluid.
+ * fluid that fills the hydraulic shape (solid/discs.h), are subtracted because this fluid moves with the disc and is
+ * counted as fluid. The weight is (m - pi R^2) g, with the radius R and not R_h.
  *
  * Contacts. An impulse within one step acts against m - m_f + M0, about m + m_f, in place of m: at B = 1 the fluid
  * inside is reflected about the new velocity, so takes up twice the momentum of a rigid motion and returns the
@@ -33,8 +34,8 @@
  * A steady acceleration is unchanged, with p = T c dV. (m - m_f) V + p is conserved, also when c changes as the disc
  * moves over the cells. Rotation likewise. Deferred momentum drives oscillations: at an angular frequency w with the
  * power c w^2 T/(1 + w^2 T^2) V^2, against the dissipation 4 pi R sqrt(nu w/2) V^2 of the boundary layer; the power
- * is larger for small discs at small viscosity. With T at least (c R/m_f)^2/nu, the time of diffusion over the part
- * c/m_f of R, the power is at most a fifth of the dissipation (test
+ * is larger for small discs at small viscosity. With T at least (c R_h/m_f)^2/nu, the time of diffusion over the part
+ * c/m_f of R_h, the power is at most a fifth of the dissipation (test
  * stability/a_crowd_of_small_light_discs_at_small_viscosity_rises_quietly).
  *
  * Where a side or another disc cuts off part of a light disc, the centroid of its cells is off the disc's centre: M1
@@ -107,10 +108,10 @@ static struct virtual_mass virtual_mass_of(const struct exchange *e, const struc
   const double coupling = sqrt((g->m1x * g->m1x + g->m1y * g->m1y) / (4 * d->fluid_mass[i] * d->fluid_inertia[i]));
   const double min = min_inertia + coupled_inertia * coupling;
   const double mass = fmax(0, min * d->fluid_mass[i] - inertia);
-  const double depth = mass / d->fluid_mass[i] * d->radius[i];
+  const double radius = d->hydraulic[i].radius, depth = mass / d->fluid_mass[i] * radius;
   return (struct virtual_mass){.mass = mass,
                                .inertia = fmax(0, min * d->fluid_inertia[i] - angular),
-                               .time = fmax(4 * sqrt(3) * d->radius[i], depth * depth / e->viscosity)};
+                               .time = fmax(4 * sqrt(3) * radius, depth * depth / e->viscosity)};
 }
 
 /* Without fluid. */
@@ -297,7 +298,7 @@ static void report_unsolved(const struct exchange *e, const struct discs *d, siz
     status_fail(
         status, DELBM_FAILED,
         "step %lld: disc %zu at (%g, %g) cannot be coupled: it is too light and too small for the cells it covers "
-        "(mass %g, of the fluid it displaces %g, coupled fluid %g); use a larger radius or density",
+        "(mass %g, of the fluid that fills it %g, coupled fluid %g); use a larger radius or density",
         (long long)step, i, d->x[i], d->y[i], d->mass[i], d->fluid_mass[i], coupled);
   else
     status_fail(status, DELBM_FAILED,
@@ -314,8 +315,7 @@ bool stage_exchange(struct exchange *e, const struct sweep_constants *constants,
     e->gathered[i] = add_up(o, constants, i);
     e->response[i] = (struct response){0};
     if (d->motion[i] != DISC_FREE) continue;
-    const double buoyant = d->mass[i] - d->fluid_mass[i];
-    double weight[2] = {buoyant * e->gravity[0], buoyant * e->gravity[1]};
+    double weight[2] = {d->buoyant_mass[i] * e->gravity[0], d->buoyant_mass[i] * e->gravity[1]};
     if (e->solve == SOLVE_EXPLICIT_AVERAGED) {
       solve_explicit(e, d, i, weight);
     } else if (!solve_implicit(e, d, i, weight)) {
@@ -416,7 +416,7 @@ void exchange_add_load(const struct exchange *e, const struct discs *d, size_t i
 {
   if (d->motion[i] != DISC_FREE) return;
   for (int axis = 0; axis < 2; axis++) {
-    load[axis] += (d->mass[i] - d->fluid_mass[i]) * e->gravity[axis];
+    load[axis] += d->buoyant_mass[i] * e->gravity[axis];
     if (e->mean_contact) load[axis] += e->mean_contact[3 * i + (size_t)axis];
   }
 }

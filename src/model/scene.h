@@ -59,7 +59,7 @@ struct disc_spec {
   enum disc_motion motion;
 };
 
-/* Area of the disc. */
+/* Area of the disc, of its radius R. */
 double disc_spec_area(const struct disc_spec *disc);
 
 /* Discs on a square grid, each displaced by up to `jitter` cells in x and in y. */
@@ -108,6 +108,7 @@ struct scene {
   struct {
     enum coupling_form form;
     enum coupling_solve solve;
+    double hydraulic_radius; /* R_h/R */
   } coupling;
 
   struct {
@@ -168,6 +169,12 @@ struct scene {
 
 /* Frees the members, not the struct itself. */
 void scene_clear(struct scene *scene);
+
+/* R_h of a disc, its radius for the fluid. */
+static inline double scene_hydraulic_radius(const struct scene *scene, const struct disc_spec *disc)
+{
+  return scene->coupling.hydraulic_radius * disc->radius;
+}
 
 /* Mean radius of the discs; at least one. */
 double scene_mean_radius(const struct scene *scene);

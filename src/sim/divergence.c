@@ -16,7 +16,7 @@ static double part_closed(const struct divergence *of, enum side_name side)
 {
   double closed = 0;
   for (size_t i = 0; i < of->discs->count; i++) {
-    const double radius = of->discs->radius[i], centre[2] = {of->discs->x[i], of->discs->y[i]};
+    const double radius = of->discs->hydraulic[i].radius, centre[2] = {of->discs->x[i], of->discs->y[i]};
     if (scene_distance_to_side(of->scene, side, centre) <= 3 * radius) closed += 2 * radius;
   }
   return fmin(1, closed / of->scene->domain.size[!side_axis(side)]);
@@ -134,7 +134,7 @@ static double gap(const struct divergence *of, size_t disc)
   double d[2] = {of->cell[0] + 0.5 - of->discs->x[disc], of->cell[1] + 0.5 - of->discs->y[disc]};
   for (int axis = 0; axis < 2; axis++)
     d[axis] = nearest_image(d[axis], of->scene->domain.size[axis], scene_is_periodic(of->scene, axis));
-  return hypot(d[0], d[1]) - of->discs->radius[disc];
+  return hypot(d[0], d[1]) - of->discs->hydraulic[disc].radius;
 }
 
 /* The side nearest to the cell, if within `reach`; SIDE_COUNT: none. */
@@ -168,7 +168,7 @@ static bool explain_squeeze(const struct divergence *of, struct status *status)
   status_add(status,
              "; it lies between disc %zu and %s: fluid leaves a gap of a cell at sqrt(2 R) = %.2g times the speed at "
              "which it closes; better: discs that approach more slowly, or a smaller fluid.viscosity",
-             near[0], other, sqrt(2 * of->discs->radius[near[0]]));
+             near[0], other, sqrt(2 * of->discs->hydraulic[near[0]].radius));
   return true;
 }
 

@@ -39,9 +39,10 @@ static double past_fixed_discs(const struct scene *scene, double force)
   for (size_t i = 0; i < scene->particles.count; i++) {
     const struct disc_spec *disc = &scene->particles.discs[i];
     if (disc->motion != DISC_FIXED) continue;
+    const double own = scene_hydraulic_radius(scene, disc);
     count++;
-    radius += disc->radius;
-    area += disc_spec_area(disc);
+    radius += own;
+    area += M_PI * own * own;
   }
   if (count == 0) return INFINITY;
   const double load = force * cells / count, fraction = fmin(area / cells, 0.7);
@@ -97,13 +98,13 @@ static void consider_sides(struct estimate *fastest, const struct scene *scene)
 static void consider_disc(struct estimate *fastest, const struct scene *scene, size_t i)
 {
   const struct disc_spec *disc = &scene->particles.discs[i];
-  const double along = hypot(disc->velocity[0], disc->velocity[1]), rim = fabs(disc->spin) * disc->radius;
-  const double advised = estimate_advised_speed(scene);
+  const double radius = scene_hydraulic_radius(scene, disc), advised = estimate_advised_speed(scene);
+  const double along = hypot(disc->velocity[0], disc->velocity[1]), rim = fabs(disc->spin) * radius;
   struct estimate own = {.speed = along + rim, .from = "the discs", .advised = advised, .unit = "cells/step"};
   snprintf(own.key, sizeof own.key, "particles.discs.%zu.velocity", i);
   if (rim > along) {
     snprintf(own.key, sizeof own.key, "particles.discs.%zu.spin", i);
-    own.advised = advised / disc->radius;
+    own.advised = advised / radius;
     own.unit = "radians/step";
   }
   consider(fastest, &own);
@@ -113,13 +114,13 @@ static void consider_weight(struct estimate *fastest, const struct scene *scene,
 {
   const double *gravity = scene->particles.gravity, viscosity = scene->fluid.viscosity;
   const double buoyant = disc_spec_area(disc) * fabs(disc->density - 1);
-  const double weight = buoyant * hypot(gravity[0], gravity[1]);
+  const double weight = buoyant * hypot(gravity[0], gravity[1]), radius = scene_hydraulic_radius(scene, disc);
   if (disc->motion != DISC_FREE || weight == 0) return;
   const struct estimate own = {
-      .speed = estimate_settling(disc->radius, viscosity, weight),
+      .speed = estimate_settling(radius, viscosity, weight),
       .from = "the discs",
       .key = "particles.gravity",
-      .advised = cylinder_drag(disc->radius, viscosity, scene_advised_speed) / buoyant,
+      .advised = cylinder_drag(radius, viscosity, scene_advised_speed) / buoyant,
       .unit = "cells/step^2",
   };
   consider(fastest, &own);

@@ -16,7 +16,8 @@ struct extremes {
 
 double load_mass(const struct scene *scene, const struct disc_spec *disc)
 {
-  return disc_spec_area(disc) * (disc->density + sediment_fluid(scene));
+  const double part = scene->coupling.hydraulic_radius;
+  return disc_spec_area(disc) * (disc->density + part * part * sediment_fluid(scene));
 }
 
 static double mass_by_cube(const struct scene *scene, const struct disc_spec *disc)
@@ -199,7 +200,7 @@ static double terminal_speed(const struct scene *scene, const struct disc_spec *
 {
   const double weight = hypot(sediment_disc_weight(scene, disc, 0), sediment_disc_weight(scene, disc, 1));
   if (weight > 0 && sediment_fluid(scene) == 0) return INFINITY;
-  return weight > 0 ? estimate_settling(disc->radius, scene->fluid.viscosity, weight) : 0;
+  return weight > 0 ? estimate_settling(scene_hydraulic_radius(scene, disc), scene->fluid.viscosity, weight) : 0;
 }
 
 /* Height of the fall towards an end of an axis. Along a periodic axis it ends by drag or, without fluid, is taken as the

@@ -4,7 +4,7 @@
  * each other, their own weight on the side, or of the heaviest on a smaller one; along a periodic axis, on which there is
  * no pile, own weight on the smallest disc.
  *
- * Impact. Kinetic energy m_eff v^2/2 of relative motion, m the mass of the disc and of the fluid that it displaces. v is
+ * Impact. Kinetic energy m_eff v^2/2 of relative motion, m the mass of the disc and of the fluid inside R_h. v is
  * the largest relative speed of discs at rest, at their initial velocities and, under gravity, at the lesser of
  * terminal velocity (estimate_settling) and that of a free fall onto the pile. Drag on the way and damping are not subtracted.
  *
@@ -28,7 +28,7 @@ struct loads {
   struct load at_rest, impact; /* with force or energy 0: none */
 };
 
-/* Mass of a disc and of the fluid that it displaces. */
+/* Mass of a disc and of the fluid inside its hydraulic radius. */
 double load_mass(const struct scene *scene, const struct disc_spec *disc);
 
 struct loads loads_of(const struct scene *scene);

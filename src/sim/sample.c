@@ -71,7 +71,7 @@ static void sample_row(const struct sampling *s, const struct sample_rows *rows,
 static size_t widest_row(const struct discs *discs)
 {
   double radius = 0;
-  for (size_t i = 0; i < discs->count; i++) radius = fmax(radius, discs->radius[i]);
+  for (size_t i = 0; i < discs->count; i++) radius = fmax(radius, discs->hydraulic[i].radius);
   return (size_t)ceil(2 * radius) + 2 + SHAPE_PAD;
 }
 

@@ -547,7 +547,7 @@ static double momentum_drift(struct simulation *s)
   if (!closed_system) return NAN;
   const double cells = s->stages.fluid ? (double)scene_cells(s->scene) : 0;
   double buoyant_mass = 0, momentum[2], largest = 0;
-  for (size_t i = 0; i < s->discs.count; i++) buoyant_mass += s->discs.mass[i] - s->discs.fluid_mass[i];
+  for (size_t i = 0; i < s->discs.count; i++) buoyant_mass += s->discs.buoyant_mass[i];
   const double mass = s->stages.fluid ? cells : buoyant_mass;
   conserved_momentum(s, momentum);
   for (int axis = 0; axis < 2; axis++) {

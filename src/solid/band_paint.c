@@ -23,7 +23,7 @@ static bool rows_in_band(const struct occupation *o, const struct discs *discs, 
   const int first_row = index * BAND_ROWS, rows = o->rows[disc];
   const int end_row = first_row + BAND_ROWS < o->size[1] ? first_row + BAND_ROWS : o->size[1];
   const int low = first_row + image * o->size[1] - o->row[disc], high = low + end_row - first_row;
-  const int columns = (int)ceil(2 * discs->radius[disc]) + 2;
+  const int columns = (int)ceil(2 * discs->hydraulic[disc].radius) + 2;
   *s = (struct disc_rows){.disc = disc,
                           .from = low > 0 ? low : 0,
                           .end = high < rows ? high : rows,
@@ -86,7 +86,7 @@ static bool paint_rows(struct occupation *o, struct band *band, struct band_draf
                        const struct disc_rows *s, size_t *cells, struct status *status)
 {
   const size_t disc = s->disc;
-  const struct shape *shape = &discs->shape[disc];
+  const struct shape *shape = &discs->hydraulic[disc];
   const struct pose pose = discs_pose(discs, disc);
   const int rows = s->end - s->from, column = o->column[disc];
   struct row_extents e;

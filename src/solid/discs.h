@@ -1,5 +1,9 @@
-/* The discs: one array per quantity, indexed by disc. Lattice units; angles counter-clockwise. The reference density of
- * the fluid is 1, so that fluid_mass = pi R^2 is the mass of the fluid that would fill the disc; 0 without fluid. */
+/* The discs: one array per quantity, indexed by disc. Lattice units; angles counter-clockwise; the reference density of
+ * the fluid is 1.
+ *
+ * A disc has two shapes: `shape`, of radius R, for contacts, mass and buoyancy, and `hydraulic`, of the hydraulic radius
+ * R_h = coupling.hydraulic_radius R, for the fluid. The cells of the disc are those of `hydraulic`. Without fluid m_f and
+ * I_f are 0, and the buoyant mass is the mass. */
 #ifndef DELBM_SOLID_DISCS_H
 #define DELBM_SOLID_DISCS_H
 
@@ -14,12 +18,13 @@ struct wrench {
 
 struct discs {
   size_t count;
-  struct shape *shape;
-  double *radius;                  /* of the shape's smallest circle about its centroid (shape.h) */
-  double *mass, *fluid_mass;       /* density times area: of the solid, of the displaced fluid */
-  double *inertia, *fluid_inertia; /* mass and fluid mass times the square of the radius of gyration */
-  uint8_t *motion;                 /* enum disc_motion */
-  double *x, *y, *angle;           /* centre (inside the box where it is periodic), rotation since the start */
+  struct shape *shape, *hydraulic;
+  double *radius;         /* of the shape's smallest circle about its centroid (shape.h) */
+  double *mass, *inertia; /* of the solid: density times area, mass times square of the radius of gyration */
+  double *fluid_mass, *fluid_inertia; /* m_f and I_f: of the fluid that fills the hydraulic shape */
+  double *buoyant_mass;               /* mass less that of the fluid which the shape displaces, pi R^2 */
+  uint8_t *motion;                    /* enum disc_motion */
+  double *x, *y, *angle;              /* centre (inside the box where it is periodic), rotation since the start */
   double *vx, *vy, *omega;
   double *fx, *fy, *torque;                         /* of the fluid on the solid, last step (exchange.h) */
   double *contact_fx, *contact_fy, *contact_torque; /* of discs and walls on the disc, last step */

@@ -68,7 +68,7 @@ bool occupation_create(struct occupation *o, const struct scene *scene, const st
                            .discs = discs->count,
                            .band_count = (scene->domain.size[1] + BAND_ROWS - 1) / BAND_ROWS};
   size_t rows = 0;
-  for (size_t i = 0; i < discs->count; i++) rows += max_lines(discs->radius[i]);
+  for (size_t i = 0; i < discs->count; i++) rows += max_lines(discs->hydraulic[i].radius);
   if (!allocate(o, rows, status)) {
     occupation_destroy(o);
     return false;
@@ -77,7 +77,7 @@ bool occupation_create(struct occupation *o, const struct scene *scene, const st
   for (size_t i = 0; i < discs->count; i++) {
     o->order[i] = (uint32_t)i;
     o->first_row[i] = rows;
-    rows += max_lines(discs->radius[i]);
+    rows += max_lines(discs->hydraulic[i].radius);
   }
   return true;
 }
@@ -103,13 +103,14 @@ void occupation_destroy(struct occupation *o)
 /* Updates pose, damping and rows of disc i. Rows beyond walls lie in no band: their entries remain no_run. */
 static void locate(struct occupation *o, const struct discs *discs, size_t i)
 {
-  const struct shape_kind *kind = discs->shape[i].kind;
+  const struct shape *shape = &discs->hydraulic[i];
+  const struct shape_kind *kind = shape->kind;
   const struct pose pose = discs_pose(discs, i);
-  const double damping = weight_damping(o->form, o->viscosity, discs->radius[i] * discs->omega[i]);
+  const double damping = weight_damping(o->form, o->viscosity, shape->radius * discs->omega[i]);
   const bool same_cells = o->x[i] == pose.x && o->y[i] == pose.y && (kind->round || o->angle[i] == pose.angle);
   o->moved[i] = !(o->painted && same_cells && o->damping[i] == damping);
   if (!o->moved[i]) return;
-  const struct shape_box box = kind->box(&discs->shape[i], &pose);
+  const struct shape_box box = kind->box(shape, &pose);
   o->old_row[i] = o->row[i];
   o->old_rows[i] = o->rows[i];
   o->x[i] = pose.x;
@@ -280,7 +281,7 @@ bool stage_occupation(struct occupation *o, const struct discs *discs, struct te
 static void add_fractions(const struct occupation *o, const struct discs *discs, const struct run *run, double *eps,
                           double *scratch)
 {
-  const struct shape *shape = &discs->shape[run->owner];
+  const struct shape *shape = &discs->hydraulic[run->owner];
   const struct pose pose = discs_pose(discs, run->owner);
   const int row = (int)lround(run->ry + pose.y - 0.5), column = (int)lround(run->rx + pose.x - 0.5);
   struct row_extents e;

@@ -1,5 +1,5 @@
-/* Occupation: the cells of each disc and the owner weights w_p B of these cells (fluid/runs.h), as runs of cells in
- * rows.
+/* Occupation: the cells of each disc, of its hydraulic shape (discs.h), and the owner weights w_p B of these cells
+ * (fluid/runs.h), as runs of cells in rows.
  *
  * Contract. After stage_occupation the tables describe the poses in `discs`: occupation_row has the runs of a row from
  * left to right, and occupation_sums has the sums that the sweep has taken over one run. The cells of a disc beyond a
