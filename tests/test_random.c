@@ -80,8 +80,13 @@ static void put_fluid(FILE *to, gsl_rng *random, const struct mood *mood)
   fprintf(to, "  precision: %s\n  ", chance(random, 0.2) ? "single" : "double");
   const double force = chance(random, 0.5) ? between(random, 0, 1e-4) : 0;
   put_point(to, random, "force", force, 0, mood->absurd);
-  fprintf(to, "\ncoupling: {form: %s, solve: %s}\n", ONE_OF(random, "owen", "unified"),
+  fprintf(to, "\ncoupling: {form: %s, solve: %s", ONE_OF(random, "owen", "unified"),
           chance(random, 0.2) ? "explicit-averaged" : "implicit");
+  if (chance(random, 0.2)) {
+    fputs(", hydraulic_radius: ", to);
+    put_number(to, random, between(random, 0.5, 1), mood->absurd);
+  }
+  fputs("}\n", to);
 }
 
 static void put_disc(FILE *to, gsl_rng *random, const struct mood *mood)
@@ -147,7 +152,8 @@ static void expect_key_named(const struct case_errors *errors, const char *text)
   for (size_t k = 0; k < errors->count; k++) {
     const char *key = strstr(errors->lines[k], ": ");
     const bool named = key && (strncmp(key, ": domain", 8) == 0 || strncmp(key, ": fluid", 7) == 0 ||
-                               strncmp(key, ": particles", 11) == 0 || strncmp(key, ": contact", 9) == 0);
+                               strncmp(key, ": coupling", 10) == 0 || strncmp(key, ": particles", 11) == 0 ||
+                               strncmp(key, ": contact", 9) == 0);
     cr_expect(named, "no key in: %s\n%s", errors->lines[k], text);
   }
 }

@@ -190,7 +190,7 @@ static const char full[] = "title: \"All keys: \\\"one\\\" # two\\n\\u00fc\\u202
                            "  precision: double\n"
                            "  zero_flux: false\n"
                            "  kernel: reference\n"
-                           "coupling: {form: unified, solve: explicit-averaged}\n"
+                           "coupling: {form: unified, solve: explicit-averaged, hydraulic_radius: 0.75}\n"
                            "particles:\n"
                            "  density: 1.01\n"
                            "  gravity: [0, -0.0245]\n"
@@ -234,6 +234,7 @@ Test(scene, full_case_sets_domain_and_fluid)
   cr_expect_str_eq(scene->fluid.kernel, "reference");
   cr_expect_eq(scene->coupling.form, FORM_UNIFIED);
   cr_expect_eq(scene->coupling.solve, SOLVE_EXPLICIT_AVERAGED);
+  cr_expect_eq(scene->coupling.hydraulic_radius, 0.75);
   release(&reading);
 }
 
@@ -281,6 +282,7 @@ Test(scene, minimal_case_has_documented_defaults)
             scene->fluid.rates.s_q == rate_from_magic(1.0 / 12, scene->fluid.viscosity));
   cr_expect(!scene->fluid.zero_flux && !scene->fluid.kernel);
   cr_expect(scene->coupling.form == FORM_MIDPOINT && scene->coupling.solve == SOLVE_IMPLICIT);
+  cr_expect_eq(scene->coupling.hydraulic_radius, 1);
   cr_expect(scene->particles.count == 0 && !scene->particles.fill.present);
   cr_expect(scene->contact.area == AREA_LENS && scene->contact.search == SEARCH_GRID);
   cr_expect(scene->contact.stiffness == 0.25 && scene->contact.alpha == 0.3 && scene->contact.damping == 0.34);
