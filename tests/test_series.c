@@ -283,7 +283,7 @@ Test(max_overlap, of_a_run_is_the_largest_of_all_steps)
     const double obtained = max_overlap_of(simulation);
     cr_expect_lt(instant_of(simulation).max_overlap, largest, "the largest was earlier");
     if (k == 0) cr_expect_eq(obtained, largest, "one sub-step a step");
-    if (k == 1) cr_expect_lt(obtained, 0.02);
+    if (k == 1) cr_expect(obtained < 0.025, "%g", obtained); /* half of that without damping, 0.051 */
     simulation_destroy(simulation);
     scene_clear(&scene);
   }

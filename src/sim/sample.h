@@ -17,7 +17,7 @@ struct sample {
   double *velocity;   /* three numbers each: ux, uy, 0 */
   double *vorticity;  /* d(uy)/dx - d(ux)/dy, from the neighbouring cells at any stride */
   double *pressure;   /* above the pressure at rest: (rho - 1)/3 */
-  double *occupation; /* occupation fraction: part of the cell's area inside discs */
+  double *occupation; /* occupation fraction: part of the cell's area inside discs, of the hydraulic radius */
 };
 
 /* The grid of output.fields. */
