@@ -41,6 +41,7 @@ struct scene scene_box(int nx, int ny, double viscosity, enum sides sides)
   scene.contact.overlap = 0.01;
   scene.contact.alpha = 0.3;
   scene.contact.tangential_ratio = 0.8;
+  scene.contact.lubrication.least_gap = 0.01;
   scene.contact.damping = 0.34;
   scene.contact.steps_per_contact = 20;
   scene.run.check = 50;

@@ -473,7 +473,7 @@ Test(scene, override_that_is_wrong_is_named)
       {"gravity=[0, 1]", "--set gravity=[0, 1]: unknown key gravity; did you mean particles.gravity?"},
       {"contact.cohesion=1",
        "--set contact.cohesion=1: unknown key contact.cohesion; expected one of law, area, search, edge, "
-       "stiffness, overlap, alpha, damping, restitution, friction, tangential_ratio, rolling_friction, damping_form, substeps, "
+       "stiffness, overlap, alpha, damping, restitution, friction, tangential_ratio, rolling_friction, lubrication, damping_form, substeps, "
        "steps_per_contact"},
       {"fluid.viscosity=thick",
        "--set fluid.viscosity=thick: fluid.viscosity: got thick; expected a number > 0 and <= 10"},

@@ -15,4 +15,15 @@ static inline int whole_vectors(int n)
   return (n + VECTOR - 1) & -VECTOR;
 }
 
+/* Compilers keep fmax and fmin out of vectors. */
+static inline double max_of(double a, double b)
+{
+  return a > b ? a : b;
+}
+
+static inline double min_of(double a, double b)
+{
+  return a < b ? a : b;
+}
+
 #endif

@@ -134,6 +134,8 @@ static void check_dry(struct draft *draft)
   if (draft_has(draft, "contact.search") && draft_knows(draft, "contact.search") &&
       scene->contact.search == SEARCH_GRID)
     draft_refuse(draft, "contact.search", "linked-cell: the grid is that of the cells of a fluid, and there is none");
+  if (scene->contact.lubrication.cutoff > 0)
+    draft_refuse(draft, "contact.lubrication.cutoff", "0: with fluid: none there is no lubrication");
   if (scene->output.fields.every > 0) draft_refuse(draft, "output.fields.every", "0: fluid: none has no fields");
   if (scene->particles.listed == 0 && !scene->particles.fill.present && draft_knows(draft, "particles.discs"))
     draft_refuse(draft, "particles.discs", "at least one disc, since with fluid: none there is nothing else");

@@ -109,12 +109,14 @@ static bool expand(const struct override *override, struct tree_node **root, con
   return put(&whole, root, path);
 }
 
-static bool expand_side(struct tree *tree, struct tree_node **root, const char *path, struct status *status)
+/* Replaces a scalar at the path by {key: scalar}. */
+static bool expand_scalar(struct tree *tree, struct tree_node **root, const char *path, const char *key,
+                          struct status *status)
 {
-  struct tree_node *side = tree_find(*root, path);
-  if (!side || side->kind != TREE_SCALAR) return true;
-  const struct override override = {.tree = tree, .status = status, .origin = side->origin, .value = side};
-  return expand(&override, root, path, side, "type");
+  struct tree_node *scalar = tree_find(*root, path);
+  if (!scalar || scalar->kind != TREE_SCALAR) return true;
+  const struct override override = {.tree = tree, .status = status, .origin = scalar->origin, .value = scalar};
+  return expand(&override, root, path, scalar, key);
 }
 
 static bool expand_fluid(struct tree *tree, struct tree_node **root, struct status *status)
@@ -132,6 +134,6 @@ bool override_expand(struct tree *tree, struct tree_node **root, struct status *
 {
   static const char *const sides[] = {"domain.left", "domain.right", "domain.bottom", "domain.top"};
   for (size_t i = 0; i < sizeof sides / sizeof sides[0]; i++)
-    if (!expand_side(tree, root, sides[i], status)) return false;
-  return expand_fluid(tree, root, status);
+    if (!expand_scalar(tree, root, sides[i], "type", status)) return false;
+  return expand_scalar(tree, root, "contact.lubrication", "cutoff", status) && expand_fluid(tree, root, status);
 }

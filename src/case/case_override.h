@@ -11,7 +11,8 @@
 bool override_apply(struct tree *tree, struct tree_node **root, const char *text, struct case_errors *errors,
                     struct status *status);
 
-/* Expands short forms: of a side, `left: wall`, to `left: {type: wall}`, and `fluid: none` to `fluid: {none: true}`. */
+/* Expands short forms: of a side, `left: wall`, to `left: {type: wall}`, `contact.lubrication: 2` to
+ * `{cutoff: 2}`, and `fluid: none` to `fluid: {none: true}`. */
 bool override_expand(struct tree *tree, struct tree_node **root, struct status *status);
 
 #endif

@@ -32,22 +32,12 @@
  * the entries of their block: threads need no locks. */
 #include "base/variant.h"
 #include "contact/contact_kernel.h"
+#include "contact/contact_lanes.h"
+#include "contact/lubrication_block.h"
 #include "contact/place.h"
 
 #include <math.h>
 #include <string.h>
-
-enum { BLOCK = CONTACT_BLOCK };
-
-static inline double max_of(double a, double b)
-{
-  return a > b ? a : b;
-}
-
-static inline double min_of(double a, double b)
-{
-  return a < b ? a : b;
-}
 
 /* The largest of n values and 0, n in whole vectors. */
 static inline double largest_of(const double *v, int n)
@@ -124,23 +114,6 @@ static void KERNEL(select)(const struct contact_pass *p, size_t block)
   memset(t->torque_a + first, 0, BLOCK * sizeof *t->torque_a);
   memset(t->torque_b + first, 0, BLOCK * sizeof *t->torque_b);
 }
-
-/* The near entries of a block, in vectors. */
-struct lanes {
-  int count, n; /* entries; the same in whole vectors */
-  bool sides;
-  uint8_t entry[BLOCK]; /* counted from the first of the block */
-  struct body_pairs pairs;
-  struct body_overlaps overlaps;
-  double strength[BLOCK], damper[BLOCK], inverse_mass[BLOCK], touch[BLOCK];
-  double vx[BLOCK], vy[BLOCK], ax[BLOCK], ay[BLOCK]; /* relative velocity, relative change of velocity by dV */
-  double xx[BLOCK], xy[BLOCK], yy[BLOCK];            /* sum of both K */
-  double omega[2][BLOCK], domega[2][BLOCK], xw[2][BLOCK], yw[2][BLOCK], ww[2][BLOCK]; /* if torques count */
-  double approach[BLOCK], compliance[BLOCK], mean[BLOCK];
-  double stiffness[BLOCK], eta[BLOCK];
-  double moved[BLOCK];                 /* time since the last sub-step, or since the contact began */
-  double spring[BLOCK], normal[BLOCK]; /* impulses: of the spring alone, and J_n */
-};
 
 /* Element k of the relative motion of discs a and b. */
 static inline void load_motion(const struct disc_motions *at, struct lanes *restrict l, int k, uint32_t a, uint32_t b)
@@ -541,6 +514,24 @@ static inline __attribute__((always_inline)) void find_impulses_by(const struct 
                : find_impulses(p, block, false, false, law, max_overlap);
 }
 
+static void KERNEL(films)(const struct contact_pass *p, size_t block)
+{
+  struct lanes l;
+  memset(p->table->film + table_first(block), 0, BLOCK * sizeof *p->table->film);
+  if (p->table->near_count[block] == 0) return;
+  load(p, block, false, false, &l);
+  find_overlaps(p, block, false, false, &l);
+  find_films(p, block, &l);
+}
+
+static void lubricate(const struct contact_pass *p, size_t block)
+{
+  struct lanes l;
+  load(p, block, true, true, &l);
+  find_overlaps(p, block, true, false, &l);
+  add_lubrication(p, block, &l);
+}
+
 static void KERNEL(impulses)(const struct contact_pass *p, size_t block, double *max_overlap)
 {
   if (p->table->near_count[block] == 0) return;
@@ -555,8 +546,9 @@ static void KERNEL(impulses)(const struct contact_pass *p, size_t block, double 
     find_impulses_by(p, block, SPRING_LINEAR, max_overlap);
     break;
   }
+  if (p->lubrication) lubricate(p, block);
 }
 
 extern const struct contact_kernel KERNEL(contact_kernel);
 const struct contact_kernel KERNEL(contact_kernel) = {
-    .select = KERNEL(select), .rates = KERNEL(rates), .impulses = KERNEL(impulses)};
+    .select = KERNEL(select), .rates = KERNEL(rates), .films = KERNEL(films), .impulses = KERNEL(impulses)};

@@ -3,6 +3,7 @@
 #ifndef DELBM_CONTACT_CONTACT_KERNEL_H
 #define DELBM_CONTACT_CONTACT_KERNEL_H
 
+#include "contact/lubrication.h"
 #include "contact/substeps.h"
 #include "contact/table.h"
 #include "coupling/exchange.h"
@@ -20,11 +21,13 @@ struct contact_pass {
   const struct shape_kind *kind;
   const struct response *response; /* [disc] */
   struct disc_motions at;
-  double within;   /* gap below which an entry may act in the step */
-  double moved;    /* length of the last sub-step, by which the discs have moved */
-  double h;        /* length of this sub-step */
-  double duration; /* of the impulse */
-  bool has_cells;  /* areas by cells */
+  double within;                         /* gap below which an entry may act in the step */
+  double moved;                          /* length of the last sub-step, by which the discs have moved */
+  double h;                              /* length of this sub-step */
+  double duration;                       /* of the impulse */
+  bool has_cells;                        /* areas by cells */
+  const struct lubrication *lubrication; /* NULL: none */
+  const double *films;                   /* [disc] with lubrication: sum of the resistances of its entries */
 };
 
 struct contact_kernel {
@@ -32,6 +35,8 @@ struct contact_kernel {
   void (*select)(const struct contact_pass *pass, size_t block);
   /* Rates of the near entries, at the largest overlap that each may reach in the step. */
   void (*rates)(const struct contact_pass *pass, size_t block, struct contact_rates *max);
+  /* With lubrication: resistances of the near entries, 0 of others. */
+  void (*films)(const struct contact_pass *pass, size_t block);
   /* Impulses of the near entries over pass->duration; raises *max_overlap to the largest overlap over the
    * smaller radius. */
   void (*impulses)(const struct contact_pass *pass, size_t block, double *max_overlap);

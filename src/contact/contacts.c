@@ -49,6 +49,28 @@ static bool allocate_motions(struct contacts *c, size_t discs, struct status *st
          (c->at.angle = memory_allocate(discs, sizeof *c->at.angle, what, status));
 }
 
+static struct lubrication lubrication_of(const struct scene *scene)
+{
+  return (struct lubrication){.viscosity = scene->fluid.viscosity,
+                              .cutoff = scene->contact.lubrication.cutoff,
+                              .least_gap = scene->contact.lubrication.least_gap};
+}
+
+/* Gap from which two bodies cannot touch in the coming step. */
+static double touch_gap(struct contact_needs needs, bool cells)
+{
+  return cells ? cells_area_gap : needs.substeps ? 1 : 0;
+}
+
+static bool allocate(struct contacts *c, const struct discs *discs, struct status *status)
+{
+  return (!c->needs.substeps || allocate_motions(c, discs->count, status)) &&
+         (!contacts_lubricate(c) ||
+          (c->films = memory_allocate(discs->count, sizeof *c->films, "the contacts", status))) &&
+         table_create(&c->table, discs->count, status) &&
+         pairs_create(&c->pairs, c->scene, discs, c->needs.pairs, c->within, status);
+}
+
 bool contacts_create(struct contacts *c, const struct scene *scene, struct contact_needs needs,
                      const struct discs *discs, struct status *status)
 {
@@ -57,17 +79,13 @@ bool contacts_create(struct contacts *c, const struct scene *scene, struct conta
                          .needs = needs,
                          .law = contact_law_of(scene),
                          .kernel = contact_kernel_find(scene->fluid.kernel),
-                         .within = cells            ? cells_area_gap
-                                   : needs.substeps ? 1
-                                                    : 0,
+                         .lubrication = lubrication_of(scene),
+                         .within = fmax(touch_gap(needs, cells), scene->contact.lubrication.cutoff),
                          .scratch_size = cells ? cells_area_scratch(discs) : 0,
                          .substeps = 1,
                          .max_substeps = 1,
                          .placed = true};
-  if ((!needs.pairs && !needs.sides) || ((!needs.substeps || allocate_motions(c, discs->count, status)) &&
-                                         table_create(&c->table, discs->count, status) &&
-                                         pairs_create(&c->pairs, scene, discs, needs.pairs, c->within, status)))
-    return true;
+  if ((!needs.pairs && !needs.sides) || allocate(c, discs, status)) return true;
   contacts_destroy(c);
   return false;
 }
@@ -77,7 +95,8 @@ void contacts_destroy(struct contacts *c)
   pairs_destroy(&c->pairs);
   table_destroy(&c->table);
   states_destroy(&c->saved);
-  void *const arrays[] = {c->scratch, c->is_moving, c->at.x, c->at.y, c->at.vx, c->at.vy, c->at.omega, c->at.angle};
+  void *const arrays[] = {c->scratch, c->films, c->is_moving, c->at.x,    c->at.y,
+                          c->at.vx,   c->at.vy, c->at.omega,  c->at.angle};
   for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; k++) free(arrays[k]);
   *c = (struct contacts){0};
 }
@@ -132,7 +151,8 @@ static bool build_table(struct contacts *c, struct discs *d, struct status *stat
       !memory_grow(&c->scratch, &c->scratch_capacity, threads * c->scratch_size, sizeof *c->scratch, "the contacts",
                    status))
     return false;
-  c->table.has_spin = c->law.friction > 0 || c->law.rolling_friction > 0 || (d->count > 0 && !d->shape[0].kind->round);
+  c->table.has_spin = c->law.friction > 0 || c->law.rolling_friction > 0 || contacts_lubricate(c) ||
+                      (d->count > 0 && !d->shape[0].kind->round);
   c->table.limited = needs_limit(c);
   c->table_is_current = true;
   memset(d->contact_fx, 0, bytes);
@@ -154,7 +174,9 @@ static struct contact_pass pass_of(struct contacts *c, const struct exchange *e,
                                .moved = c->last_substep,
                                .h = 1,
                                .duration = 0.5 * (c->last_substep + 1),
-                               .has_cells = c->scratch_size > 0};
+                               .has_cells = c->scratch_size > 0,
+                               .lubrication = contacts_lubricate(c) ? &c->lubrication : NULL,
+                               .films = c->films};
 }
 
 /* The near entries of a block, with areas by cells, and the energy of new contacts of placed discs. */
@@ -173,6 +195,20 @@ static void select_near(struct contacts *c, const struct contact_pass *pass, con
       const double radius[2] = {t->radius[0][e], t->radius[1][e]};
       t->stored[e] = contact_energy(&c->law, radius, table_depth(t, c->scene, d, e));
     }
+  }
+}
+
+/* Sum of the resistances of the films of each disc, in the order of the table. */
+static void sum_films(struct contacts *c, const struct contact_pass *pass)
+{
+  const struct contact_table *t = &c->table;
+#pragma omp for schedule(static)
+  for (size_t block = 0; block < t->blocks; block++) c->kernel->films(pass, block);
+#pragma omp for schedule(static)
+  for (size_t m = 0; m < t->members; m++) {
+    double sum = 0;
+    for (size_t k = t->first[m]; k < t->first[m + 1]; k++) sum += t->film[t->end[k] / 2];
+    c->films[t->member[m]] = sum;
   }
 }
 
@@ -318,6 +354,7 @@ static void run_contacts(struct contacts *c, const struct exchange *e, struct di
   struct contact_pass pass = pass_of(c, e, d);
 #pragma omp for schedule(static)
   for (size_t block = 0; block < c->table.blocks; block++) select_near(c, &pass, d, block);
+  if (pass.lubrication) sum_films(c, &pass);
   if (c->needs.substeps) choose_substeps(c, &pass, team);
   if (c->leave_too_stiff) return;
   if (c->substeps == 1)

@@ -15,8 +15,10 @@ struct contacts {
   const struct scene *scene;
   struct contact_needs needs;
   struct contact_law law;
+  struct lubrication lubrication;
+  double *films; /* [disc] with lubrication: sum of the resistances of its entries in the step */
   const struct contact_kernel *kernel;
-  double within; /* gap from which a contact cannot act in the coming step */
+  double within; /* gap from which an entry cannot act in the coming step */
   struct pair_list pairs;
   struct contact_table table;
   struct contact_states saved; /* states to be taken over by the next table */
@@ -37,6 +39,11 @@ struct contacts {
   bool leave;           /* decision after the table is built (team.h) */
   bool leave_too_stiff; /* decision after the sub-steps are counted */
 };
+
+static inline bool contacts_lubricate(const struct contacts *c)
+{
+  return c->lubrication.cutoff > 0;
+}
 
 bool contacts_create(struct contacts *contacts, const struct scene *scene, struct contact_needs needs,
                      const struct discs *discs, struct status *status);

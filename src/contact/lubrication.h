@@ -7,7 +7,7 @@
  *   slip:         F = 2 pi mu v_s/s + O(s),     v_s the slip speed of the surfaces at the contact point;
  *   entrainment:  G = 8 pi mu v_e/s + O(s),     v_e their mean speed in the frame that turns with the line of centres.
  * Approach of a disc to a wall: Jeffrey & Onishi 1981, as are sliding, F = 4 pi mu V/s, and spin, torque 4 pi mu omega
- * R^2/tanh s; sliding has v_s = V, v_e = -V/2, spin has v_s = omega R, v_e = omega R/2. For two discs hψ = sin(beta)
+ * R^2/tanh s; sliding has v_s = V, v_e = -V/2, spin has v_s = omega R, v_e = omega R/2. For two discs h psi = sin(beta)
  * (A cosh 2 alpha + B sinh 2 alpha + C alpha + D) in bipolar coordinates satisfies no slip on both, which gives the
  * force above.
  *
@@ -20,6 +20,8 @@
  * Each coefficient is at least 0: the model dissipates energy and never returns any. */
 #ifndef DELBM_CONTACT_LUBRICATION_H
 #define DELBM_CONTACT_LUBRICATION_H
+
+#include "base/variant.h"
 
 #include <math.h>
 
@@ -40,7 +42,7 @@ static inline double lubrication_opening(double gap, double inverse_a, double in
   return gap * (2 * (inverse_a + inverse_b) + gap * inverse_a * inverse_b);
 }
 
-/* 1/s^2; relative error below 1e-4 for s < 1 and 1 % for s < 2. Padé approximant of arcosh(1 + x)^2 = 2x - x^2/3 + 4 x^3/45 - ... */
+/* 1/s^2; relative error below 1e-4 for s < 1 and 1 % for s < 2. Pade approximant of arcosh(1 + x)^2 = 2x - x^2/3 + 4 x^3/45 - ... */
 static inline double lubrication_inverse_s2(double opening)
 {
   const double x = 0.5 * opening;
@@ -80,9 +82,9 @@ static inline struct lubrication_defects lubrication_defects(double gap, double 
   const double floor = 3 * viscosity / (2 + 3 * viscosity);
   const double wall = inverse_b > 0 ? 0 : 1, pair = 1 - wall;
   return (struct lubrication_defects){
-      .normal = pair * 0.24 + wall * 0.20 * fmax(0, 1 - gap / 2),
+      .normal = pair * 0.24 + wall * 0.20 * max_of(0, 1 - gap / 2),
       .slip = (pair * 0.42 + wall * 0.20) * floor * floor,
-      .entrainment = pair * 0.10 + wall * 0.085 * fmax(0, 1 - gap / 0.3),
+      .entrainment = pair * 0.10 + wall * 0.085 * max_of(0, 1 - gap / 0.3),
   };
 }
 
@@ -102,13 +104,13 @@ static inline struct lubrication_coefficients lubrication_unresolved(double gap,
 static inline struct lubrication_coefficients lubrication_at(const struct lubrication *l, double gap, double inverse_a,
                                                              double inverse_b)
 {
-  const double least = l->least_gap / fmax(inverse_a, inverse_b);
-  const double open = gap > 0 ? 1 : 0, bounded = fmin(fmax(gap, least), l->cutoff);
+  const double least = l->least_gap / max_of(inverse_a, inverse_b);
+  const double open = gap > 0 ? 1 : 0, bounded = min_of(max_of(gap, least), l->cutoff);
   const struct lubrication_coefficients here = lubrication_unresolved(bounded, l->viscosity, inverse_a, inverse_b),
                                         end = lubrication_unresolved(l->cutoff, l->viscosity, inverse_a, inverse_b);
-  return (struct lubrication_coefficients){.normal = open * fmax(0, here.normal - end.normal),
-                                           .slip = open * fmax(0, here.slip - end.slip),
-                                           .entrainment = open * fmax(0, here.entrainment - end.entrainment)};
+  return (struct lubrication_coefficients){.normal = open * max_of(0, here.normal - end.normal),
+                                           .slip = open * max_of(0, here.slip - end.slip),
+                                           .entrainment = open * max_of(0, here.entrainment - end.entrainment)};
 }
 
 #endif

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { DOUBLE_ARRAYS = 23 };
+enum { DOUBLE_ARRAYS = 24 };
 
 bool table_create(struct contact_table *t, size_t discs, struct status *status)
 {
@@ -54,6 +54,7 @@ static void carve(struct contact_table *t, size_t entries)
                                            &t->moment,
                                            &t->moment_stiffness,
                                            &t->cells_area,
+                                           &t->film,
                                            &t->fx,
                                            &t->fy,
                                            &t->torque_a,

@@ -15,7 +15,7 @@ enum { CONTACT_BLOCK = BODY_PAIRS };
 struct contact_table {
   size_t pairs, sides;        /* entries of each kind */
   size_t pair_blocks, blocks; /* side k is entry CONTACT_BLOCK pair_blocks + k */
-  bool has_spin;              /* friction, or shapes that are not round: impulses have torques */
+  bool has_spin;              /* friction, lubrication, or shapes that are not round: impulses have torques */
   bool limited;               /* sub-steps may be too few for the forces: with a fixed number, or areas by cells */
 
   /* constants, [entry] */
@@ -37,6 +37,7 @@ struct contact_table {
   uint8_t *is_near;                      /* may act in the step */
   uint8_t *near;                         /* these entries of each block, counted from its first */
   double *cells_area;                    /* with area by cells */
+  double *film;                          /* with lubrication: resistance (lubrication_block.h) */
   double *fx, *fy, *torque_a, *torque_b; /* impulse on b in the sub-step; torques (has_spin) about a and about b */
 
   uint8_t *near_count; /* [block] */

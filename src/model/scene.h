@@ -131,6 +131,10 @@ struct scene {
     double damping;     /* damping ratio */
     double restitution; /* 0: given by the damping ratio */
     double friction, tangential_ratio, rolling_friction;
+    struct {
+      double cutoff;    /* gap, cells; 0: none */
+      double least_gap; /* part of the smaller radius */
+    } lubrication;
     enum contact_damping damping_form;
     int substeps;             /* fixed number of sub-steps a step, 0: chosen from the stiffness */
     double steps_per_contact; /* target of that choice */
