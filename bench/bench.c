@@ -12,6 +12,9 @@ const struct bench *bench_at(size_t index)
       {"contact", "what does finding contacts by the grid cost, against linked cells?", bench_contact},
       {"accuracy", "what error does each choice make, for which time?", bench_accuracy},
       {"drag", "how does the drag of a square array depend on form, rates, viscosity and solid fraction?", bench_drag},
+      {"lubrication",
+       "how much of the force between close surfaces is resolved, and how accurate is sub-grid lubrication?",
+       bench_lubrication},
       {"overlap", "how does the overlap area grow with distance, and how does the one by cells differ?", bench_overlap},
       {"stability", "what stays stable and accurate, and where does it end?", bench_stability},
   };
