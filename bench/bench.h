@@ -22,7 +22,7 @@ struct bench {
   bench_run *run;
 };
 
-bench_run bench_accuracy, bench_contact, bench_drag, bench_lubrication, bench_occupation, bench_overlap,
+bench_run bench_accuracy, bench_contact, bench_drag, bench_lubrication, bench_occupation, bench_overlap, bench_rebound,
     bench_run_alone, bench_stability, bench_step, bench_sweep;
 
 /* Prints the machine, and writes it as the first member of the report. */
