@@ -6,8 +6,8 @@
 
 #include <math.h>
 
-/* cells/step: within a run a disc moves by less than 1e-4 cells, at a Reynolds number below 1e-5 */
-static const double speed = 1e-9;
+/* cells/step: within a run a disc moves by less than 1e-6 cells, so that the force is steady */
+static const double speed = 1e-12;
 
 enum { HEAVY = 1000000000 }; /* density of discs that keep their velocity; contacts act on free discs only */
 
@@ -69,7 +69,7 @@ static bool run(const struct film *f, enum film_motion motion, bool together, do
   const double n[2] = {is_wall(f) ? 0 : cos(f->angle), is_wall(f) ? -1 : sin(f->angle)}, t[2] = {-n[1], n[0]};
   const int64_t interval = (int64_t)(0.025 * scene.domain.size[1] * scene.domain.size[1] / f->viscosity) + 50;
   const int of = motion == FILM_APPROACH || motion == FILM_SLIDE || together ? 0 : 1;
-  struct steady steady[2] = {{.enough = 2e-4}, {.enough = 2e-4}};
+  struct steady steady[2] = {{.enough = 1e-3}, {.enough = 1e-3}};
   add_discs(f, motion, together, place, &scene);
   bool ok = simulation_create(&simulation, &scene, status), known = false;
   for (int k = 0; ok && !known && k < 200; k++) {

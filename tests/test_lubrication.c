@@ -1,6 +1,9 @@
-/* Coefficients of sub-grid lubrication against exact solutions. */
+/* Sub-grid lubrication: its coefficients and the forces of simulations against exact solutions; conservation, energy. */
 #include "contact/lubrication.h"
-#include "two_discs.h"
+#include "drive.h"
+#include "film.h"
+#include "rebound.h"
+#include "scenes.h"
 
 #include <criterion/criterion.h>
 #include <math.h>
@@ -104,4 +107,176 @@ Test(lubrication, grows_as_the_gap_closes)
       cr_expect_geq(near.slip, far.slip, "gap %g", gap);
       cr_expect_geq(near.entrainment, far.entrainment, "gap %g", gap);
     }
+}
+
+/* Mean error of a force over places; `worst` of the largest. */
+static double mean_error(const struct film *film, enum film_motion motion, double *worst)
+{
+  static const double at[][3] = {{0.2, 0.5, 0.25}, {0.6, 0.1, 0.4}}; /* angle, offsets */
+  const int count = isinf(film->radius[1]) ? 1 : 2;                  /* beside a wall places hardly count */
+  double sum = 0;
+  for (int k = 0; k < count; k++) {
+    struct film here = *film;
+    struct status status;
+    double error;
+    here.angle = at[k][0];
+    here.offset[0] = at[k][1];
+    here.offset[1] = at[k][2];
+    cr_assert(film_error(&here, motion, &error, &status), "%s", status.message);
+    sum += error / count;
+    *worst = fmax(*worst, fabs(error));
+  }
+  return sum;
+}
+
+static void expect_within(const struct film *film, double tolerance)
+{
+  double worst = 0;
+  for (enum film_motion m = 0; m < FILM_MOTIONS; m++) {
+    if (m == FILM_ENTRAINMENT && isinf(film->radius[1])) continue;
+    const double error = mean_error(film, m, &worst);
+    cr_expect_lt(fabs(error), tolerance, "radii %g %g, motion %d, gap %g: %g, at worst %g", film->radius[0],
+                 film->radius[1], m, film->gap, error, worst);
+  }
+}
+
+Test(lubrication, forces_and_torques_at_a_wall_are_within_ten_per_cent_down_to_the_least_gap)
+{
+  struct film film = {.radius = {5, INFINITY}, .viscosity = 1.0 / 6, .cutoff = 2};
+  static const double gaps[] = {2, 0.3, 0.05};
+  for (int g = 0; g < 3; g++) {
+    film.gap = gaps[g];
+    expect_within(&film, 0.1);
+  }
+}
+
+Test(lubrication, forces_and_torques_of_two_discs_are_within_ten_per_cent_at_the_least_gap)
+{
+  const struct film film = {.radius = {5, 5}, .gap = 0.05, .viscosity = 1.0 / 6, .cutoff = 2};
+  expect_within(&film, 0.1);
+}
+
+/* Approach is independent of viscosity; at a large one the flow is soon steady. */
+Test(lubrication, the_lattice_alone_resolves_less_than_a_fifth_of_the_force_at_the_least_gap_of_a_large_disc)
+{
+  struct film film = {.radius = {10, INFINITY}, .gap = 0.1, .viscosity = 0.5};
+  double exact, without, with;
+  struct status status;
+  cr_assert(film_exact(&film, FILM_APPROACH, &exact) && film_force(&film, FILM_APPROACH, &without, &status));
+  film.cutoff = 2;
+  cr_assert(film_force(&film, FILM_APPROACH, &with, &status));
+  cr_expect_lt(without / exact, 0.2);
+  cr_expect_float_eq(with / exact, 1, 0.1, "%g", with / exact);
+}
+
+/* Two free discs of different size at a small gap, with velocities and spins of their own. */
+static struct scene near_discs(double gap)
+{
+  struct scene scene = scene_box(60, 50, 0.1, SIDES_PERIODIC);
+  struct disc_spec *disc = scene_add_disc(&scene, 5, 1.5, 58, 25.3);
+  disc->velocity[0] = 0.01;
+  disc->velocity[1] = 0.02;
+  disc->spin = 0.003;
+  disc = scene_add_disc(&scene, 7, 2, 58 + (12 + gap) * cos(0.4) - 60, 25.3 + (12 + gap) * sin(0.4));
+  disc->velocity[0] = -0.02;
+  disc->spin = 0.002;
+  scene.contact.lubrication.cutoff = 2;
+  return scene;
+}
+
+Test(lubrication, forces_on_both_discs_are_opposite_and_without_a_couple_and_take_energy)
+{
+  struct scene scene = near_discs(0.4);
+  struct simulation *simulation = start(&scene);
+  const struct discs *d = simulation_discs(simulation);
+  double force = 0, torque = 0;
+  for (int step = 0; step < 200; step++) {
+    const double dx = nearest_image(d->x[1] - d->x[0], 60, true), dy = nearest_image(d->y[1] - d->y[0], 50, true);
+    advance(simulation, 1);
+    if (hypot(dx, dy) < 12) continue; /* in contact */
+    const double fx = d->contact_fx[1], fy = d->contact_fy[1], size = hypot(fx, fy);
+    double power = 0;
+    for (int i = 0; i < 2; i++)
+      power += d->contact_fx[i] * d->vx[i] + d->contact_fy[i] * d->vy[i] + d->contact_torque[i] * d->omega[i];
+    cr_assert_float_eq(d->contact_fx[0] + fx, 0, 1e-12 * size);
+    cr_assert_float_eq(d->contact_fy[0] + fy, 0, 1e-12 * size);
+    cr_assert_float_eq(d->contact_torque[0] + d->contact_torque[1] + dx * fy - dy * fx, 0, 1e-11 * size, "step %d",
+                       step);
+    cr_assert_leq(power, 0, "step %d", step);
+    force = fmax(force, size);
+    torque = fmax(torque, fabs(d->contact_torque[0]));
+  }
+  cr_expect_gt(force, 1e-3, "%g", force);
+  cr_expect_gt(torque, 1e-4, "%g", torque);
+  simulation_destroy(simulation);
+  scene_clear(&scene);
+}
+
+/* A disc so heavy that it sinks in steady state, in little fluid motion: the speed is that of its weight over the exact
+ * resistance. */
+Test(lubrication, a_disc_sinks_on_a_wall_at_the_speed_of_the_exact_resistance)
+{
+  struct scene scene = scene_box(80, 60, 0.1, SIDES_CLOSED);
+  scene.domain.side[SIDE_LEFT].type = scene.domain.side[SIDE_RIGHT].type = SIDE_PERIODIC;
+  scene_add_disc(&scene, 5, 1.5, 40.2, 5.6);
+  scene.particles.gravity[1] = -1e-4;
+  scene.contact.lubrication.cutoff = 2;
+  const double weight = 0.5 * M_PI * 25 * 1e-4;
+  struct simulation *simulation = start(&scene);
+  const struct discs *d = simulation_discs(simulation);
+  int measured = 0;
+  for (int k = 0; k < 60 && d->y[0] > 5.06; k++) {
+    const double before = d->y[0];
+    advance(simulation, 250);
+    const double gap = (before + d->y[0]) / 2 - 5, s = acosh(1 + gap / 5);
+    const double speed = weight * (s - tanh(s)) / (4 * M_PI * 0.1);
+    if (k < 4) continue; /* start */
+    cr_expect_float_eq((before - d->y[0]) / 250 / speed, 1, 0.1, "gap %g: %g", gap, (before - d->y[0]) / 250 / speed);
+    measured++;
+  }
+  cr_expect_gt(measured, 5);
+  simulation_destroy(simulation);
+  scene_clear(&scene);
+}
+
+Test(lubrication, rebound_falls_with_the_stokes_number_and_vanishes_at_small_ones)
+{
+  static const double viscosities[] = {0.01, 0.04, 0.12};
+  double last = 0.97;
+  for (int k = 0; k < 3; k++) {
+    struct rebound with = {.density = 80, .viscosity = viscosities[k], .cutoff = 2}, without = with;
+    struct status status;
+    without.cutoff = 0;
+    cr_assert(rebound_run(&with, &status) && rebound_run(&without, &status), "%s", status.message);
+    cr_expect_lt(with.restitution, last - 0.1);
+    cr_expect_lt(with.restitution, without.restitution - 0.05);
+    last = with.restitution;
+  }
+  cr_expect_eq(last, 0);
+}
+
+/* Films that would stop a disc within a small part of a step, many to a disc: implicit by each contact alone, the impulses of all
+ * contacts of a disc would add up to more than its speed. */
+Test(lubrication, a_crowd_of_light_discs_in_stiff_films_sinks_quietly)
+{
+  struct scene scene = scene_box(100, 100, 5, SIDES_CLOSED);
+  struct status status;
+  scene.particles.gravity[1] = -1e-3;
+  scene.particles.fill = (struct fill_spec){.present = true,
+                                            .spacing = 8.4,
+                                            .radius = 4,
+                                            .density = 0.5,
+                                            .jitter = 0.19,
+                                            .region = {0, 0, 100, 100},
+                                            .seed = 1};
+  cr_assert(scene_fill(&scene, &status), "%s", status.message);
+  scene.contact.lubrication.cutoff = 2;
+  scene.contact.lubrication.least_gap = 0.001;
+  struct simulation *simulation = start(&scene);
+  struct simulation_report report;
+  advance(simulation, 300);
+  simulation_report(simulation, &report);
+  cr_expect_lt(report.max_mach, 0.05, "%g", report.max_mach);
+  simulation_destroy(simulation);
+  scene_clear(&scene);
 }
