@@ -7,6 +7,9 @@
 
 #include <criterion/criterion.h>
 #include <math.h>
+#include <omp.h>
+#include <stdlib.h>
+#include <string.h>
 
 static double exact_s(double gap, double inverse_a, double inverse_b)
 {
@@ -279,4 +282,27 @@ Test(lubrication, a_crowd_of_light_discs_in_stiff_films_sinks_quietly)
   cr_expect_lt(report.max_mach, 0.05, "%g", report.max_mach);
   simulation_destroy(simulation);
   scene_clear(&scene);
+}
+
+Test(lubrication, has_the_same_bits_for_any_number_of_threads_and_any_search)
+{
+  struct scene crowd = scene_crowd(160, 160, 4, 8.5, 0.2);
+  const size_t bytes = crowd.particles.count * sizeof(double);
+  double *first = malloc(3 * bytes), *state = malloc(3 * bytes);
+  crowd.contact.lubrication.cutoff = 2;
+  crowd.contact.stiffness = 30;
+  for (int k = 0; k < 4; k++) {
+    omp_set_num_threads(1 + k % 3);
+    crowd.contact.search = k > 1 ? SEARCH_LINKED_CELL : SEARCH_GRID;
+    struct simulation *simulation = start(&crowd);
+    advance(simulation, 40);
+    const struct discs *d = simulation_discs(simulation);
+    const double *const arrays[] = {d->x, d->omega, d->contact_torque};
+    for (size_t a = 0; a < 3; a++) memcpy((k > 0 ? state : first) + a * crowd.particles.count, arrays[a], bytes);
+    cr_expect(k == 0 || memcmp(first, state, 3 * bytes) == 0, "run %d", k);
+    simulation_destroy(simulation);
+  }
+  free(first);
+  free(state);
+  scene_clear(&crowd);
 }

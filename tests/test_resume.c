@@ -85,6 +85,13 @@ Test(state, of_stiff_contacts_is_whole)
   expect_same_end("stiff, cells", &scene, 400, 41);
 }
 
+Test(state, of_lubricated_discs_is_whole)
+{
+  struct scene scene = scene_crowd(150, 130, 7, 15, 0.4);
+  scene.contact.lubrication.cutoff = 2;
+  expect_same_end("lubricated", &scene, 240, 37);
+}
+
 /* Two discs that move through all sides of a periodic box, one driven. */
 static struct scene periodic_pair(double density)
 {

@@ -454,6 +454,20 @@ Test(scene, override_does_not_change_other_uses_of_an_alias)
   release(&reading);
 }
 
+Test(scene, lubrication_as_a_number_is_its_cut_off)
+{
+  struct reading reading = read_with(minimal, "contact.lubrication=1.5");
+  cr_assert(reading.valid);
+  cr_expect_eq(reading.scene.contact.lubrication.cutoff, 1.5);
+  cr_expect_eq(reading.scene.contact.lubrication.least_gap, 0.01);
+  release(&reading);
+  reading = read_with(minimal, "contact.lubrication={least_gap: 0.1}");
+  cr_assert(reading.valid);
+  cr_expect_eq(reading.scene.contact.lubrication.cutoff, 0);
+  cr_expect_eq(reading.scene.contact.lubrication.least_gap, 0.1);
+  release(&reading);
+}
+
 Test(scene, override_that_is_wrong_is_named)
 {
   static const struct {
@@ -473,7 +487,8 @@ Test(scene, override_that_is_wrong_is_named)
       {"gravity=[0, 1]", "--set gravity=[0, 1]: unknown key gravity; did you mean particles.gravity?"},
       {"contact.cohesion=1",
        "--set contact.cohesion=1: unknown key contact.cohesion; expected one of law, area, search, edge, "
-       "stiffness, overlap, alpha, damping, restitution, friction, tangential_ratio, rolling_friction, lubrication, damping_form, substeps, "
+       "stiffness, overlap, alpha, damping, restitution, friction, tangential_ratio, rolling_friction, lubrication, "
+       "damping_form, substeps, "
        "steps_per_contact"},
       {"fluid.viscosity=thick",
        "--set fluid.viscosity=thick: fluid.viscosity: got thick; expected a number > 0 and <= 10"},

@@ -134,8 +134,6 @@ static void check_dry(struct draft *draft)
   if (draft_has(draft, "contact.search") && draft_knows(draft, "contact.search") &&
       scene->contact.search == SEARCH_GRID)
     draft_refuse(draft, "contact.search", "linked-cell: the grid is that of the cells of a fluid, and there is none");
-  if (scene->contact.lubrication.cutoff > 0)
-    draft_refuse(draft, "contact.lubrication.cutoff", "0: with fluid: none there is no lubrication");
   if (scene->output.fields.every > 0) draft_refuse(draft, "output.fields.every", "0: fluid: none has no fields");
   if (scene->particles.listed == 0 && !scene->particles.fill.present && draft_knows(draft, "particles.discs"))
     draft_refuse(draft, "particles.discs", "at least one disc, since with fluid: none there is nothing else");
@@ -192,6 +190,18 @@ static void check_law(struct draft *draft)
 {
   if (draft->scene.contact.area == AREA_CELLS && draft->scene.contact.law != SPRING_OVERLAP)
     draft_refuse(draft, "contact.area", "lens: areas by cells are for contact.law: overlap");
+}
+
+/* The part of the force that cells resolve was measured for one form. */
+static void check_lubrication(struct draft *draft)
+{
+  const struct scene *scene = &draft->scene;
+  if (!(scene->contact.lubrication.cutoff > 0)) return;
+  if (scene->fluid.none)
+    draft_refuse(draft, "contact.lubrication.cutoff", "0: with fluid: none there is no lubrication");
+  else if (scene->coupling.form != FORM_MIDPOINT)
+    draft_refuse(draft, "contact.lubrication.cutoff",
+                 "0: lubrication is for coupling.form: midpoint, whose resolved part of the force is known");
 }
 
 /* Restitution determines the damping. */
@@ -504,6 +514,7 @@ bool case_check(struct draft *draft, struct status *status)
   check_substeps(draft);
   check_law(draft);
   check_restitution(draft);
+  check_lubrication(draft);
   check_fill(draft);
   check_hydraulic_radius(draft);
   check_shown(draft);
