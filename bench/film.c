@@ -87,6 +87,11 @@ static bool run(const struct film *f, enum film_motion motion, bool together, do
   return ok;
 }
 
+bool film_loads(const struct film *f, enum film_motion motion, double loads[2], struct status *status)
+{
+  return run(f, motion, false, loads, status);
+}
+
 bool film_force(const struct film *f, enum film_motion motion, double *force, struct status *status)
 {
   double loads[2], common[2];

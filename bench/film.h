@@ -26,7 +26,10 @@ struct film {
 /* Force or torque over R_a, over viscosity and speed (spins: of the rim of a). The speed is so small that nothing moves. */
 bool film_force(const struct film *film, enum film_motion motion, double *force, struct status *status);
 
-/* The same in unbounded Stokes flow: exact, or two_discs.h. */
+/* Both the force and the torque over R_a. */
+bool film_loads(const struct film *film, enum film_motion motion, double loads[2], struct status *status);
+
+/* film_force in unbounded Stokes flow: exact, or two_discs.h. */
 bool film_exact(const struct film *film, enum film_motion motion, double *force);
 
 /* Difference of film_force to film_exact over film_exact. The effect of the distant sides of the box, hardly dependent

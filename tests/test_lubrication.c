@@ -155,8 +155,24 @@ Test(lubrication, forces_and_torques_at_a_wall_are_within_ten_per_cent_down_to_t
 
 Test(lubrication, forces_and_torques_of_two_discs_are_within_ten_per_cent_at_the_least_gap)
 {
-  const struct film film = {.radius = {5, 5}, .gap = 0.05, .viscosity = 1.0 / 6, .cutoff = 2};
+  struct film film = {.radius = {5, 5}, .gap = 0.05, .viscosity = 1.0 / 6, .cutoff = 2};
+  double worst = 0;
   expect_within(&film, 0.1);
+  film.gap = 0.4;
+  cr_expect_lt(fabs(mean_error(&film, FILM_APPROACH, &worst)), 0.1, "at worst %g", worst);
+}
+
+/* The exact torque is 0. */
+Test(lubrication, a_disc_that_slides_along_a_wall_without_spin_has_less_torque_than_without_the_model)
+{
+  struct film film = {.radius = {5, INFINITY}, .gap = 0.05, .viscosity = 0.05};
+  double without[2], with[2];
+  struct status status;
+  cr_assert(film_loads(&film, FILM_SLIDE, without, &status), "%s", status.message);
+  film.cutoff = 2;
+  cr_assert(film_loads(&film, FILM_SLIDE, with, &status), "%s", status.message);
+  cr_expect_lt(fabs(with[1] / with[0]), 0.1, "%g", with[1] / with[0]);
+  cr_expect_gt(fabs(without[1] / without[0]), 0.3, "%g", without[1] / without[0]);
 }
 
 /* Approach is independent of viscosity; at a large one the flow is soon steady. */
