@@ -202,6 +202,9 @@ static void check_lubrication(struct draft *draft)
   else if (scene->coupling.form != FORM_MIDPOINT)
     draft_refuse(draft, "contact.lubrication.cutoff",
                  "0: lubrication is for coupling.form: midpoint, whose resolved part of the force is known");
+  else if (scene->coupling.hydraulic_radius < 1)
+    draft_refuse(draft, "contact.lubrication.cutoff",
+                 "0: with coupling.hydraulic_radius the gap in the fluid is another than that between the discs");
 }
 
 /* Restitution determines the damping. */
