@@ -37,33 +37,35 @@ struct lubrication_coefficients {
 };
 
 /* 2 (cosh s - 1) of a gap. */
-static inline double lubrication_opening(double gap, double inverse_a, double inverse_b)
+static inline __attribute__((always_inline)) double lubrication_opening(double gap, double inverse_a, double inverse_b)
 {
   return gap * (2 * (inverse_a + inverse_b) + gap * inverse_a * inverse_b);
 }
 
 /* 1/s^2; relative error below 1e-4 for s < 1 and 1 % for s < 2. Pade approximant of arcosh(1 + x)^2 = 2x - x^2/3 + 4 x^3/45 - ... */
-static inline double lubrication_inverse_s2(double opening)
+static inline __attribute__((always_inline)) double lubrication_inverse_s2(double opening)
 {
   const double x = 0.5 * opening;
   return (1 + x * (4.0 / 15)) / (opening * (1 + 0.1 * x));
 }
 
 /* 1/(s - tanh s) = 3/s^3 + 6/(5 s) - 0.006 s + ... from 1/s^2; error as above. */
-static inline double lubrication_squeeze(double inverse_s2)
+static inline __attribute__((always_inline)) double lubrication_squeeze(double inverse_s2)
 {
   return sqrt(inverse_s2) * (3 * inverse_s2 + 1.2);
 }
 
 /* The difference of 1/s between a gap and the gap that the lattice resolves. */
-static inline double lubrication_shear_defect(double gap, double q, double inverse_a, double inverse_b)
+static inline __attribute__((always_inline)) double lubrication_shear_defect(double gap, double q, double inverse_a,
+                                                                             double inverse_b)
 {
   const double exact = lubrication_inverse_s2(lubrication_opening(gap, inverse_a, inverse_b));
   const double resolved = lubrication_inverse_s2(lubrication_opening(sqrt(gap * gap + q), inverse_a, inverse_b));
   return sqrt(exact) - sqrt(resolved);
 }
 
-static inline double lubrication_squeeze_defect(double gap, double q, double inverse_a, double inverse_b)
+static inline __attribute__((always_inline)) double lubrication_squeeze_defect(double gap, double q, double inverse_a,
+                                                                               double inverse_b)
 {
   const double exact = lubrication_inverse_s2(lubrication_opening(gap, inverse_a, inverse_b));
   const double resolved = lubrication_inverse_s2(lubrication_opening(sqrt(gap * gap + q), inverse_a, inverse_b));
@@ -78,7 +80,8 @@ struct lubrication_defects {
   double normal, slip, entrainment;
 };
 
-static inline struct lubrication_defects lubrication_defects(double gap, double viscosity, double inverse_b)
+static inline __attribute__((always_inline)) struct lubrication_defects
+lubrication_defects(double gap, double viscosity, double inverse_b)
 {
   const double f = 3 * viscosity / (2 + 3 * viscosity);
   const double wall = inverse_b > 0 ? 0 : 1, pair = 1 - wall;
@@ -91,8 +94,8 @@ static inline struct lubrication_defects lubrication_defects(double gap, double 
 }
 
 /* L(h) - L(H). */
-static inline struct lubrication_coefficients lubrication_unresolved(double gap, double viscosity, double inverse_a,
-                                                                     double inverse_b)
+static inline __attribute__((always_inline)) struct lubrication_coefficients
+lubrication_unresolved(double gap, double viscosity, double inverse_a, double inverse_b)
 {
   const struct lubrication_defects q = lubrication_defects(gap, viscosity, inverse_b);
   return (struct lubrication_coefficients){
@@ -103,8 +106,8 @@ static inline struct lubrication_coefficients lubrication_unresolved(double gap,
 }
 
 /* The coefficients at a gap (negative: an overlap) of discs of radius 1/inverse_a and 1/inverse_b (0: a side). */
-static inline struct lubrication_coefficients lubrication_at(const struct lubrication *l, double gap, double inverse_a,
-                                                             double inverse_b)
+static inline __attribute__((always_inline)) struct lubrication_coefficients
+lubrication_at(const struct lubrication *l, double gap, double inverse_a, double inverse_b)
 {
   const double least = l->least_gap / max_of(inverse_a, inverse_b);
   const double open = gap > 0 ? 1 : 0, bounded = min_of(max_of(gap, least), l->cutoff);

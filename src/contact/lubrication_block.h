@@ -27,7 +27,8 @@ struct film_mode {
 };
 
 /* Speed of mode g by an impulse of mode f. */
-static inline double film_compliance(const struct lanes *l, int k, struct film_mode f, struct film_mode g)
+static inline __attribute__((always_inline)) double film_compliance(const struct lanes *l, int k, struct film_mode f,
+                                                                    struct film_mode g)
 {
   const double of_a = f.a * (g.x * l->xw[0][k] + g.y * l->yw[0][k]) + g.a * (f.x * l->xw[0][k] + f.y * l->yw[0][k]);
   const double of_b = f.b * (g.x * l->xw[1][k] + g.y * l->yw[1][k]) + g.b * (f.x * l->xw[1][k] + f.y * l->yw[1][k]);
@@ -36,7 +37,8 @@ static inline double film_compliance(const struct lanes *l, int k, struct film_m
 }
 
 /* Speed of a mode at the end of a sub-step of length h without contacts. */
-static inline double film_speed(const struct lanes *l, int k, struct film_mode g, double h)
+static inline __attribute__((always_inline)) double film_speed(const struct lanes *l, int k, struct film_mode g,
+                                                               double h)
 {
   return g.x * (l->vx[k] + h * l->ax[k]) + g.y * (l->vy[k] + h * l->ay[k]) +
          g.a * (l->omega[0][k] + h * l->domega[0][k]) + g.b * (l->omega[1][k] + h * l->domega[1][k]);
@@ -49,15 +51,15 @@ static inline bool film_exists(const struct contact_pass *p, size_t block, const
   return !l->sides || p->scene->domain.side[b - contact_sides].type == SIDE_WALL;
 }
 
-static inline struct lubrication_coefficients film_coefficients(const struct contact_pass *p, const struct lanes *l,
-                                                                int k)
+static inline __attribute__((always_inline)) struct lubrication_coefficients
+film_coefficients(const struct contact_pass *p, const struct lanes *l, int k)
 {
   return lubrication_at(p->lubrication, -l->overlaps.depth[k], 1 / l->pairs.radius[0][k], 1 / l->pairs.radius[1][k]);
 }
 
 /* Of the modes together: at least the sum of beta c over the modes, by translation of one disc of unit compliance. A
  * uniform disc has R^2 times the compliance of spin at twice that of translation. */
-static inline double film_resistance(struct lubrication_coefficients beta)
+static inline __attribute__((always_inline)) double film_resistance(struct lubrication_coefficients beta)
 {
   return beta.normal + 3 * beta.slip + 0.75 * beta.entrainment;
 }
