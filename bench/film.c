@@ -128,14 +128,27 @@ bool film_exact(const struct film *f, enum film_motion motion, double *force)
   return true;
 }
 
-bool film_error(const struct film *f, enum film_motion motion, double *error, struct status *status)
+static bool difference(const struct film *f, enum film_motion motion, double *of, double *exact, struct status *status)
+{
+  if (!film_force(f, motion, of, status)) return false;
+  if (!film_exact(f, motion, exact))
+    return status_fail(status, DELBM_FAILED, "memory runs out in the solution of two discs");
+  *of -= *exact;
+  return true;
+}
+
+bool film_far(const struct film *f, enum film_motion motion, double *excess, struct status *status)
 {
   struct film far = *f;
-  double force, exact, force_far, exact_far;
+  double exact;
   far.gap = 4;
-  if (!film_force(f, motion, &force, status) || !film_force(&far, motion, &force_far, status)) return false;
-  if (!film_exact(f, motion, &exact) || !film_exact(&far, motion, &exact_far))
-    return status_fail(status, DELBM_FAILED, "memory runs out in the solution of two discs");
-  *error = (force - exact - (force_far - exact_far)) / exact;
+  return difference(&far, motion, excess, &exact, status);
+}
+
+bool film_error(const struct film *f, enum film_motion motion, double excess, double *error, struct status *status)
+{
+  double exact;
+  if (!difference(f, motion, error, &exact, status)) return false;
+  *error = (*error - excess) / exact;
   return true;
 }

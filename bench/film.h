@@ -32,8 +32,11 @@ bool film_loads(const struct film *film, enum film_motion motion, double loads[2
 /* film_force in unbounded Stokes flow: exact, or two_discs.h. */
 bool film_exact(const struct film *film, enum film_motion motion, double *force);
 
-/* Difference of film_force to film_exact over film_exact. The effect of the distant sides of the box, hardly dependent
- * on the gap, is taken from a gap of 4 cells, which the lattice resolves, and subtracted. */
-bool film_error(const struct film *film, enum film_motion motion, double *error, struct status *status);
+/* film_force less film_exact at a gap of 4 cells, which the lattice resolves: the effect of the distant sides of the box, which hardly
+ * depends on the gap. */
+bool film_far(const struct film *film, enum film_motion motion, double *excess, struct status *status);
+
+/* Difference of film_force, less the excess, to film_exact over film_exact. */
+bool film_error(const struct film *film, enum film_motion motion, double excess, double *error, struct status *status);
 
 #endif

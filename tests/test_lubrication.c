@@ -121,11 +121,12 @@ static double mean_error(const struct film *film, enum film_motion motion, doubl
   for (int k = 0; k < count; k++) {
     struct film here = *film;
     struct status status;
-    double error;
+    double error, excess;
     here.angle = at[k][0];
     here.offset[0] = at[k][1];
     here.offset[1] = at[k][2];
-    cr_assert(film_error(&here, motion, &error, &status), "%s", status.message);
+    cr_assert(film_far(&here, motion, &excess, &status) && film_error(&here, motion, excess, &error, &status), "%s",
+              status.message);
     sum += error / count;
     *worst = fmax(*worst, fabs(error));
   }
