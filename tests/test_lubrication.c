@@ -283,10 +283,10 @@ Test(lubrication, a_crowd_of_light_discs_in_stiff_films_sinks_quietly)
   struct status status;
   scene.particles.gravity[1] = -1e-3;
   scene.particles.fill = (struct fill_spec){.present = true,
-                                            .spacing = 8.4,
+                                            .spacing = 8.2,
                                             .radius = 4,
                                             .density = 0.5,
-                                            .jitter = 0.19,
+                                            .jitter = 0.09,
                                             .region = {0, 0, 100, 100},
                                             .seed = 1};
   cr_assert(scene_fill(&scene, &status), "%s", status.message);

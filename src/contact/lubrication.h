@@ -7,9 +7,9 @@
  *   slip:         F = 2 pi mu v_s/s + O(s),     v_s the slip speed of the surfaces at the contact point;
  *   entrainment:  G = 8 pi mu v_e/s + O(s),     v_e their mean speed in the frame that turns with the line of centres.
  * Approach of a disc to a wall: Jeffrey & Onishi 1981, as are sliding, F = 4 pi mu V/s, and spin, torque 4 pi mu omega
- * R^2/tanh s; sliding has v_s = V, v_e = -V/2, spin has v_s = omega R, v_e = omega R/2. For two discs h psi = sin(beta)
- * (A cosh 2 alpha + B sinh 2 alpha + C alpha + D) in bipolar coordinates satisfies no slip on both, which gives the
- * force above.
+ * R^2/tanh s; sliding has v_s = V, v_e = -V/2, spin has v_s = omega R, v_e = omega R/2. For two discs the
+ * stream function sin(beta) (A cosh 2 alpha + B sinh 2 alpha + C alpha + D)/(cosh alpha - cos beta) in bipolar coordinates
+ * satisfies no slip on both, which gives the force above.
  *
  * Resolved forces. Partly covered cells smooth the surfaces, so that the lattice resolves the gap h as a gap H >= h,
  *   H^2 = h^2 + q.
