@@ -118,7 +118,7 @@ static bool reserve(struct contact_table *t, size_t pairs, size_t sides, struct 
   if (!memory_grow(&t->block, &t->block_capacity, t->blocks * CONTACT_BLOCK, entry_bytes(), "the contacts", status) ||
       !memory_grow(&t->ends, &t->end_capacity, 2 * pairs + sides, sizeof *t->end, "the contacts", status))
     return false;
-  memset(t->block, 0, t->block_capacity * entry_bytes());
+  if (t->block) memset(t->block, 0, t->block_capacity * entry_bytes());
   t->end = t->ends;
   carve(t, t->block_capacity);
   return true;
