@@ -21,11 +21,12 @@ static struct scene film_scene(const struct film *f, double place[2])
 {
   const double big = is_wall(f) ? f->radius[0] : fmax(f->radius[0], f->radius[1]);
   const int nx = (int)lround((is_wall(f) ? 16 : 12) * big), ny = (int)lround((is_wall(f) ? 10 : 12) * big);
+  const int middle[2] = {nx / 2, ny / 2};
   struct scene scene = scene_box(nx, ny, f->viscosity, SIDES_CLOSED);
   if (is_wall(f)) scene.domain.side[SIDE_LEFT].type = scene.domain.side[SIDE_RIGHT].type = SIDE_PERIODIC;
   scene.contact.lubrication.cutoff = f->cutoff;
-  place[0] = nx / 2 + f->offset[0];
-  place[1] = is_wall(f) ? f->radius[0] + f->gap : ny / 2 + f->offset[1];
+  place[0] = middle[0] + f->offset[0];
+  place[1] = is_wall(f) ? f->radius[0] + f->gap : middle[1] + f->offset[1];
   return scene;
 }
 

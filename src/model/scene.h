@@ -126,7 +126,7 @@ struct scene {
     double edge; /* of the linked cells; 0: one diameter */
     double stiffness;
     enum stiffness_source stiffness_source;
-    double overlap; /* of the smaller radius, under the expected load, for `auto` */
+    double overlap;     /* of the smaller radius, under the expected load, for `auto` */
     double alpha;       /* 0: of the radii of each pair */
     double damping;     /* damping ratio */
     double restitution; /* 0: given by the damping ratio */
