@@ -19,22 +19,22 @@ static double deep_segment(double radius, double half_chord, double arm)
   return radius * radius * atan2(half_chord, arm) - arm * half_chord;
 }
 
-/* Adds the segments of the discs of radius[k] to the areas. */
+/* Adds the segments of the discs of radius[k] to the areas. No variable of the loop is narrower than its elements: else a vector
+ * has more than VECTOR elements and the loop a remainder, in which a compiler may fuse other products. */
 static inline void add_segments(int n, const double *restrict radius, const double *restrict arm,
                                 const double *restrict chord, double *restrict area)
 {
-  double deep[BODY_PAIRS];
-  int any = 0;
-#pragma omp simd reduction(| : any)
+  double deep[BODY_PAIRS], any = 0;
+#pragma omp simd reduction(+ : any)
   for (int k = 0; k < n; k++) {
     const double s = 0.5 * chord[k] / radius[k];
-    const int is_deep = s > 0.5 || arm[k] < 0;
+    const bool is_deep = s > 0.5 || arm[k] < 0;
     const double segment = radius[k] * radius[k] * unit_segment(s < 0.5 ? s : 0.5);
     deep[k] = is_deep;
     area[k] += is_deep ? 0 : segment;
-    any |= is_deep;
+    any += deep[k];
   }
-  for (int k = 0; any && k < n; k++)
+  for (int k = 0; any > 0 && k < n; k++)
     if (deep[k] > 0) area[k] += deep_segment(radius[k], 0.5 * chord[k], arm[k]);
 }
 
