@@ -26,7 +26,9 @@
  *
  * Where the number of sub-steps does not follow from the contacts (table.h, `limited`), the stored energy limits J_n, no spring
  * is stiffer than a sub-step resolves, k_t <= 1/(c_t h^2), and no damper stops more than half of its motion in a sub-step,
- * eta_t <= 1/(2 c_t h); c_r likewise.
+ * eta_t <= 1/(2 c_t h); c_r likewise. The energy stored in these springs limits J_t and the rolling impulse M, one after the other,
+ * J_t u - c_t J_t^2/2 >= -E: an oscillator resolved by few sub-steps has, within its period, kinetic energy beyond its total, and a
+ * contact that ends then would leave the discs with it.
  *
  * Loops run over whole vectors. Elements past the last entry are copies of the first and are not stored. Functions write only to
  * the entries of their block: threads need no locks. */
@@ -389,6 +391,24 @@ static inline double slide(struct slider *spring, double stiffness, double eta, 
   return max_of(-max, min_of(max, wanted));
 }
 
+/* Energy E of the spring between two sub-steps, F F'/(2 k) with F' = F + k speed moved: a leapfrog with constant k keeps the sum of
+ * kinetic energy and E. */
+static inline double stored_energy(struct slider spring, double speed, double moved)
+{
+  const double next = spring.force + spring.stiffness * speed * moved;
+  return spring.stiffness > 0 ? max_of(0, 0.5 * spring.force * next / spring.stiffness) : 0;
+}
+
+/* The force, limited to the `stored` energy: the impulse J does the work J (speed - c J/2) >= -stored, c the compliance. */
+static inline double limit_by_energy(struct slider *spring, double force, double stored, double speed,
+                                     double compliance, double duration)
+{
+  const double root = sqrt(speed * speed + 2 * compliance * stored), scale = 1 / (compliance * duration);
+  const double low = scale * (speed - root), high = scale * (speed + root);
+  spring->force = max_of(low, min_of(high, spring->force));
+  return max_of(low, min_of(high, force));
+}
+
 /* Tangential impulses and rolling moments, and the wrenches on both bodies. */
 static inline __attribute__((always_inline)) void find_friction(const struct contact_pass *p, size_t block,
                                                                 bool limited, const struct lanes *l)
@@ -420,6 +440,8 @@ static inline __attribute__((always_inline)) void find_friction(const struct con
     const double ct = limited ? shear_compliance(l, k) : 0, cr = limited ? l->ww[0][k] + l->ww[1][k] : 0;
     const bool acts = j > 0;
     struct slider shear = {force[k], force_stiffness[k]}, turn = {moment[k], moment_stiffness[k]};
+    const double sheared = limited ? stored_energy(shear, slip, l->moved[k]) : 0;
+    const double turned = limited ? stored_energy(turn, roll, l->moved[k]) : 0;
     double kt = ratio * kn, et = root * l->eta[k], kr = 3 * arm[k] * arm[k] * kn, er = rolling_damper[k] * sqrt(kn);
     if (limited) {
       kt = min_of(kt, 1 / (ct * h * h));
@@ -427,8 +449,13 @@ static inline __attribute__((always_inline)) void find_friction(const struct con
       kr = min_of(kr, 1 / (cr * h * h));
       er = min_of(er, 1 / (2 * cr * h));
     }
-    const double along = slide(&shear, kt, et, slip, l->moved[k], duration * slip_compliance[k], friction[k] * normal);
-    const double torque = slide(&turn, kr, er, roll, l->moved[k], duration * roll_compliance[k], arm[k] * normal);
+    double along = slide(&shear, kt, et, slip, l->moved[k], duration * slip_compliance[k], friction[k] * normal);
+    double torque = slide(&turn, kr, er, roll, l->moved[k], duration * roll_compliance[k], arm[k] * normal);
+    if (limited) {
+      along = limit_by_energy(&shear, along, sheared, slip, ct, duration);
+      const double after = roll + duration * along * (ab * l->ww[1][k] - aa * l->ww[0][k]);
+      torque = limit_by_energy(&turn, torque, turned, after, cr, duration);
+    }
     const double jt = acts ? duration * along : 0, jr = acts ? duration * torque : 0;
     force[k] = acts ? shear.force : 0;
     force_stiffness[k] = acts ? shear.stiffness : 0;
