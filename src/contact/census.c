@@ -2,6 +2,7 @@
  * number of discs. Sorted, a pair that was found twice is counted once. Count and maximum do not depend on the order. */
 #include "contact/census.h"
 
+#include "base/variant.h"
 #include "contact/linked_cell.h"
 #include "contact/place.h"
 
@@ -24,7 +25,7 @@ struct tally {
 static int fill_vectors(struct body_pairs *p)
 {
   const int count = p->count, last = count - 1;
-  for (; p->count % 8 != 0; p->count++) {
+  for (; p->count % VECTOR != 0; p->count++) {
     const int k = p->count;
     p->dx[k] = p->dx[last];
     p->dy[k] = p->dy[last];

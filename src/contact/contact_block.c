@@ -17,9 +17,9 @@
  * With S and D as for other impulses the restitution would be up to 10 % off, since the damper's force jumps when a contact begins.
  *
  * Friction (Cundall & Strack 1979): a spring of force F and stiffness k_t = tangential_ratio dF_s/d delta, with a damper
- * eta_t = sqrt(tangential_ratio) eta. While the overlap grows F' = F + k_t u dt; when k_t falls, F is reduced in proportion, so
- * that the spring's energy F^2/(2 k_t) never grows by a change of k_t. The damper acts on the mean slip speed, as above. Coulomb: |F + eta_t u| <= mu F_n; beyond this, the force is
- * mu F_n, and F at most that. F turns with n, since t does.
+ * eta_t = sqrt(tangential_ratio) eta at the mean slip speed, as above. F' = F + k_t u dt; when k_t falls, F is first reduced in
+ * proportion, so that the spring's energy F^2/(2 k_t) never grows by a change of k_t. Coulomb: |F + eta_t u| <= mu F_n; beyond
+ * this, the force is mu F_n, and F at most that. F turns with n, since t does.
  *
  * Rolling friction (Ai, Chen, Rotter & Ooi 2011, model C): the same spring and damper for the torque, with the rolling speed r
  * in place of u, the stiffness k_r = 3 (mu_r R*)^2 dF_s/d delta, and the limit mu_r R* F_n.
@@ -514,7 +514,8 @@ static inline __attribute__((always_inline)) void find_impulses(const struct con
                                                                 double *max_overlap)
 {
   struct lanes l;
-  load(p, block, spin, limited, &l);
+  const bool lubricated = spin && p->lubrication;
+  load(p, block, spin, limited || lubricated, &l);
   find_overlaps(p, block, spin, law == SPRING_OVERLAP, &l);
   find_normal(p, law, &l);
   if (limited) {
@@ -525,6 +526,7 @@ static inline __attribute__((always_inline)) void find_impulses(const struct con
     find_friction(p, block, limited, &l);
   else
     store_normal(p, block, &l);
+  if (lubricated) add_lubrication(p, block, &l);
   if (spin || limited) note_live(p, block, limited, &l);
   *max_overlap = max_of(*max_overlap, largest_overlap(&l));
 }
@@ -551,14 +553,6 @@ static void KERNEL(films)(const struct contact_pass *p, size_t block)
   find_films(p, block, &l);
 }
 
-static void lubricate(const struct contact_pass *p, size_t block)
-{
-  struct lanes l;
-  load(p, block, true, true, &l);
-  find_overlaps(p, block, true, false, &l);
-  add_lubrication(p, block, &l);
-}
-
 static void KERNEL(impulses)(const struct contact_pass *p, size_t block, double *max_overlap)
 {
   if (p->table->near_count[block] == 0) return;
@@ -573,7 +567,6 @@ static void KERNEL(impulses)(const struct contact_pass *p, size_t block, double 
     find_impulses_by(p, block, SPRING_LINEAR, max_overlap);
     break;
   }
-  if (p->lubrication) lubricate(p, block);
 }
 
 extern const struct contact_kernel KERNEL(contact_kernel);

@@ -106,11 +106,10 @@ void contacts_placed(struct contacts *c)
   c->placed = true;
 }
 
-/* Moves the states from the table to `saved`. */
+/* Copies the states from the table to `saved`. */
 static bool save_states(struct contacts *c, struct status *status)
 {
-  if (c->table_is_current && !table_states(&c->table, &c->saved, status)) return false;
-  return true;
+  return !c->table_is_current || table_states(&c->table, &c->saved, status);
 }
 
 bool contacts_store(struct contacts *c, size_t discs, struct store *store, struct status *status)
@@ -255,21 +254,24 @@ static void note_overlap(struct contacts *c, double max_overlap)
   c->max_overlap = fmax(c->max_overlap, max_overlap);
 }
 
-/* Sum of the impulses on member m, and whether any of its entries is near. */
-static struct wrench impulse_on(const struct contact_table *t, size_t m, bool *is_near)
+static struct wrench impulse_on(const struct contact_table *t, size_t m)
 {
   struct wrench sum = {0};
-  bool any = false;
   for (size_t k = t->first[m]; k < t->first[m + 1]; k++) {
     const size_t e = t->end[k] / 2;
     const bool b = t->end[k] & 1;
     sum.fx += b ? t->fx[e] : -t->fx[e];
     sum.fy += b ? t->fy[e] : -t->fy[e];
     if (t->has_spin) sum.torque += b ? t->torque_b[e] : t->torque_a[e];
-    any |= t->is_near[e];
   }
-  *is_near = any;
   return sum;
+}
+
+static bool has_near_entry(const struct contact_table *t, size_t m)
+{
+  bool any = false;
+  for (size_t k = t->first[m]; k < t->first[m + 1]; k++) any |= t->is_near[t->end[k] / 2];
+  return any;
 }
 
 /* One sub-step, from the discs' own arrays. */
@@ -283,21 +285,18 @@ static void run_one_substep(struct contacts *c, const struct contact_pass *pass,
 #pragma omp for schedule(static)
   for (size_t m = 0; m < c->table.members; m++) {
     const uint32_t i = c->table.member[m];
-    bool is_near;
-    const struct wrench impulse = impulse_on(&c->table, m, &is_near);
+    const struct wrench impulse = impulse_on(&c->table, m);
     d->contact_fx[i] = impulse.fx;
     d->contact_fy[i] = impulse.fy;
     d->contact_torque[i] = impulse.torque;
   }
 }
 
-/* Copies the motion of member m to `at` if it has sub-steps. */
+/* Copies the motion of member m to `at`. */
 static void start_moving(struct contacts *c, struct discs *d, size_t m)
 {
   const uint32_t i = c->table.member[m];
-  bool is_near;
-  impulse_on(&c->table, m, &is_near);
-  c->is_moving[i] = is_near;
+  c->is_moving[i] = has_near_entry(&c->table, m);
   d->contact_fx[i] = d->contact_fy[i] = d->contact_torque[i] = 0;
   c->at.x[i] = d->x[i];
   c->at.y[i] = d->y[i];
@@ -313,10 +312,9 @@ static void move_disc(struct contacts *c, const struct exchange *e, struct discs
   const uint32_t i = c->table.member[m];
   struct disc_motions *at = &c->at;
   const struct response *r = &e->response[i];
-  bool is_near;
-  const struct wrench impulse = impulse_on(&c->table, m, &is_near);
   double dv[3];
   if (!c->is_moving[i]) return;
+  const struct wrench impulse = impulse_on(&c->table, m);
   d->contact_fx[i] += impulse.fx;
   d->contact_fy[i] += impulse.fy;
   d->contact_torque[i] += impulse.torque;

@@ -16,6 +16,15 @@ int substeps_needed(const struct scene *scene, const struct contact_rates *rates
   return (int)fmin(fmax(1, ceil(fmax(for_spring, for_damper))), 1e9);
 }
 
+struct contact_rates substeps_rates(const struct contact_law *law, double stiffness, double compliance)
+{
+  const double slip = law->friction > 0 ? 3 * law->tangential_ratio : 0; /* c_t = 3 c_n for discs */
+  const double turn = 6 * law->rolling_friction * law->rolling_friction; /* k_r c_r over k_n c_n, at most */
+  return (struct contact_rates){.any = true,
+                                .spring = stiffness * compliance * fmax(1, fmax(slip, turn)),
+                                .damper = contact_damping(law, compliance, stiffness) * compliance};
+}
+
 int substeps_by_lens(const struct scene *scene)
 {
   double min_mass = INFINITY, radius = 0;
@@ -28,12 +37,7 @@ int substeps_by_lens(const struct scene *scene)
   }
   if (!(min_mass < INFINITY)) return 1;
   const double stiffness = contact_spring_at(&law, (const double[2]){radius, INFINITY}, 1).stiffness;
-  const double compliance = 2 / min_mass;
-  const double slip = law.friction > 0 ? 3 * law.tangential_ratio : 0; /* c_t = 3 c_n for discs */
-  const double turn = 6 * law.rolling_friction * law.rolling_friction; /* k_r c_r over k_n c_n, at most */
-  const struct contact_rates rates = {.any = true,
-                                      .spring = stiffness * compliance * fmax(1, fmax(slip, turn)),
-                                      .damper = contact_damping(&law, compliance, stiffness) * compliance};
+  const struct contact_rates rates = substeps_rates(&law, stiffness, 2 / min_mass);
   return substeps_needed(scene, &rates);
 }
 

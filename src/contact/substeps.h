@@ -3,7 +3,7 @@
 #ifndef DELBM_CONTACT_SUBSTEPS_H
 #define DELBM_CONTACT_SUBSTEPS_H
 
-#include "model/scene.h"
+#include "contact/law.h"
 
 /* Rates of contacts: the largest stiffness (force per overlap) times compliance (speed per impulse; without fluid the
  * inverse mass of relative motion), and the largest damping coefficient times compliance. */
@@ -11,6 +11,9 @@ struct contact_rates {
   bool any; /* false: no contact may act */
   double spring, damper;
 };
+
+/* Rates of a contact of two discs, friction and rolling friction included, for a stiffness and compliance of approach. */
+struct contact_rates substeps_rates(const struct contact_law *law, double stiffness, double compliance);
 
 int substeps_needed(const struct scene *scene, const struct contact_rates *rates);
 

@@ -95,10 +95,7 @@ int load_substeps(const struct scene *scene, const struct load *load)
   const struct contact_law law = contact_law_of(scene);
   const double overlap = load_overlap(scene, load) * smaller_radius(load), compliance = 1 / load->mass;
   const double stiffness = contact_spring_at(&law, load->radius, overlap).stiffness;
-  const double slip = law.friction > 0 ? 3 * law.tangential_ratio : 0; /* 3: compliance of slip over that of approach */
-  const struct contact_rates rates = {.any = true,
-                                      .spring = stiffness * compliance * fmax(1, slip),
-                                      .damper = contact_damping(&law, compliance, stiffness) * compliance};
+  const struct contact_rates rates = substeps_rates(&law, stiffness, compliance);
   return substeps_needed(scene, &rates);
 }
 

@@ -17,7 +17,7 @@
  * block advances first the rows that no disc can reach within its steps, then the disc rows step by step. A failure
  * within such a block leaves rows at different steps: block_incomplete then excludes sums over all rows.
  *
- * Without fluid stages 2 and stage_motion are the step: no populations, no occupation, no sums, no blocking. The
+ * Without fluid, stage_contact and stage_motion are the step: no populations, no occupation, no sums, no blocking. The
  * response of the discs is constant (exchange.c).
  *
  * State. The state of a checkpoint is the fluid, the discs, and what exchange and contacts store between steps;
