@@ -1,5 +1,5 @@
-# Heights and falling speeds of the two discs for every combination of form, area and solve, with the reference points; and
-# frames of one run. Usage: gnuplot -c cases/dkt/plot.gp DIR; DIR holds the runs of the file `runs` (see cases/reproduce).
+# Heights and falling speeds of the two discs for every combination of form, area and solve, with the reference points; the
+# contact laws; and frames of one run. Usage: gnuplot -c cases/dkt/plot.gp DIR; DIR holds the runs of the file `runs` (see cases/reproduce).
 if (ARGC != 1) { print "usage: gnuplot -c cases/dkt/plot.gp DIR   (DIR: the runs)"; exit status 2 }
 reference = system("dirname '" . ARG0 . "'") . "/reference.csv"
 
@@ -41,6 +41,28 @@ do for [offset in "3 0.1"] {
        reference using 4:(theirs("uy", "trailing")) with points pointtype 7 linecolor rgb "black" notitle, \
        reference using 4:(theirs("uy", "leading")) with points pointtype 6 linecolor rgb "black" notitle
 }
+unset multiplot
+
+set terminal pngcairo size 1000, 420 font "sans,10"
+set output ARG1 . "/laws.png"
+laws = "overlap hertz linear"
+hue(k) = (k == 1) ? 0xc2481a : (k == 2) ? 0x2170be : 0x2f8f4e
+set multiplot layout 1, 2
+set title "one impact without fluid"
+set xlabel "time / steps"
+set ylabel "impulse a step / lattice units"
+set xrange [80:200]
+plot for [k=1:3] ARG1 . "/impact-" . word(laws, k) . "/particles.csv" using "step":(ours(1, column("contact_fx"))) with lines \
+  linewidth 4 - k linecolor rgb hue(k) dashtype k title word(laws, k)
+set title "the same laws in this case, from 3 cells"
+set xlabel "t / s"
+set ylabel "vertical velocity / (cm/s)"
+set xrange [0:5]
+set key bottom right
+plot for [k=1:3] ARG1 . "/law-" . word(laws, k) . "-3/particles.csv" using (column("step") * dt):(ours(0, column("vy") * dx / dt)) with lines \
+       linewidth 4 - k linecolor rgb hue(k) dashtype k title "trailing, " . word(laws, k), \
+     for [k=1:3] ARG1 . "/law-" . word(laws, k) . "-3/particles.csv" using (column("step") * dt):(ours(1, column("vy") * dx / dt)) with lines \
+       linewidth 2 linecolor rgb hue(k) dashtype k title "leading, " . word(laws, k)
 unset multiplot
 
 reset
