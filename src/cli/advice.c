@@ -99,9 +99,7 @@ static void advise_form_inside(const struct scene *scene)
 static void advise_substeps(const struct scene *scene)
 {
   if (scene->contact.substeps == 0 || scene->contact.area == AREA_CELLS) return;
-  struct scene freely = *scene;
-  freely.contact.substeps = 0;
-  const int needed = substeps_by_lens(&freely);
+  const int needed = substeps_automatic(scene);
   if (needed > scene->contact.substeps)
     printf("  note: %d sub-steps are fewer than the %d that contacts may need: damping and overlap of contacts are "
            "inaccurate; better: substeps: auto (bench/STABILITY.md)\n",

@@ -133,13 +133,15 @@ bool contacts_store(struct contacts *c, size_t discs, struct store *store, struc
   return stored;
 }
 
-/* True if the stored energy has to limit impulses: with areas by cells, a fixed number of sub-steps, or a damper that dissipates
- * less than ten times the error of the sub-steps. Over N sub-steps a contact gains or loses up to about 1/N^2 of its energy; the
- * damper dissipates 2 pi eta_0 of it. */
+/* True if the stored energy has to limit impulses: with areas by cells, a fixed number of sub-steps below the automatic one,
+ * or a damper that dissipates less than ten times the error of the sub-steps. Over N sub-steps a contact gains or loses up to
+ * about 1/N^2 of its energy; the damper dissipates 2 pi eta_0 of it. */
 static bool needs_limit(const struct contacts *c)
 {
-  const double n = c->scene->contact.steps_per_contact;
-  return c->scratch_size > 0 || c->scene->contact.substeps > 0 || 2 * M_PI * c->law.damping * n * n < 10;
+  const struct scene *scene = c->scene;
+  const double n = scene->contact.steps_per_contact;
+  const bool too_few = scene->contact.substeps > 0 && scene->contact.substeps < substeps_automatic(scene);
+  return c->scratch_size > 0 || too_few || 2 * M_PI * c->law.damping * n * n < 10;
 }
 
 /* Builds the table anew; by one thread. */

@@ -17,10 +17,14 @@ struct contact_rates substeps_rates(const struct contact_law *law, double stiffn
 
 int substeps_needed(const struct scene *scene, const struct contact_rates *rates);
 
-/* Maximum over the scene's discs, at an overlap of one cell. */
-int substeps_max(const struct scene *scene);
+/* The choice of contact.substeps: auto with area by lens, whatever the key says: the number that resolves each contact
+ * of the scene's free discs up to an overlap of one cell. */
+int substeps_automatic(const struct scene *scene);
 
-/* The same with area by lens: the choice of contact.substeps: auto. */
+/* The number with area by lens: a fixed one, or substeps_automatic. */
 int substeps_by_lens(const struct scene *scene);
+
+/* The largest number that a step may take. */
+int substeps_max(const struct scene *scene);
 
 #endif
