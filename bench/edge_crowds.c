@@ -1,6 +1,7 @@
 /* Limits of many discs: overlap under their weight, large ratios of radii, several centres within one cell. */
 #include "edge.h"
 #include "scenes.h"
+#include "sim/load.h"
 
 #include <math.h>
 
@@ -24,64 +25,102 @@ static bool watch_overlap(struct simulation *simulation, void *context)
   return true;
 }
 
-/* A map of stiffness (rows) and the argument of `scene_of` (columns). */
+/* A map of the arguments of `scene_of`, rows and columns. */
 struct crowd_map {
   struct map map;
+  const double *rows;
+  int row_count;
   const double *columns;
   int count;
   int64_t steps;
-  struct scene (*scene_of)(double column);
+  struct scene (*scene_of)(double row, double column);
 };
 
 static bool put_crowds(struct edge *edge, struct crowd_map *crowds, struct status *status)
 {
-  static const double stiffnesses[] = {0.025, 0.25, 2.5, 25, 250};
   struct map *map = &crowds->map;
   map_set_columns(map, crowds->columns, crowds->count);
   map_begin(map, edge->report);
-  for (int r = 0; r < 5; r += edge->report->quick ? 2 : 1) {
+  for (int r = 0; r < crowds->row_count; r += edge->report->quick ? 2 : 1) {
     struct place row[MAP_COLUMNS];
     char label[MAP_LABEL];
     for (int c = 0; c < map->columns; c++) {
       double deepest = 0;
-      struct scene scene = crowds->scene_of(crowds->columns[c]);
+      struct scene scene = crowds->scene_of(crowds->rows[r], crowds->columns[c]);
       struct edge_run run = {.steps = edge->report->quick ? crowds->steps / 20 : crowds->steps,
                              .every = 50,
                              .watch = watch_overlap,
                              .context = &deepest};
-      scene.contact.stiffness = stiffnesses[r];
       const bool ok = edge_run(edge, &scene, &run, status);
       scene_clear(&scene);
       if (!ok) return false;
       row[c] = run.diverged ? map_diverged(run.end) : map_judge(map, deepest, run.end);
     }
-    snprintf(label, sizeof label, "%g", stiffnesses[r]);
+    snprintf(label, sizeof label, crowds->rows[r] > 0 ? "%g" : "auto", crowds->rows[r]);
     map_row(map, edge->report, label, row, r == 0);
   }
   map_end(edge->report);
   return true;
 }
 
+/* 0: the stiffness for an overlap of 1 % under the expected load. */
+static void set_stiffness(struct scene *scene, double stiffness)
+{
+  scene->contact.stiffness = stiffness;
+  if (stiffness > 0) return;
+  const struct loads loads = loads_of(scene);
+  load_set_stiffness(scene, &loads, INFINITY);
+}
+
 /* The paper's crowd, with `weight` times its weight less buoyancy. */
-static struct scene pressed(double weight)
+static struct scene pressed(double stiffness, double weight)
 {
   struct scene scene = scene_crowd(80, 80, 5, 11, 0.2);
   for (size_t i = 0; i < scene.particles.count; i++) scene.particles.discs[i].density = 1 + 0.01 * weight;
+  set_stiffness(&scene, stiffness);
   return scene;
 }
 
-/* Discs of R = 1 falling on one that is larger by the ratio. */
-static struct scene polydisperse(double ratio)
+/* A crowd of discs of R = 2 and density 2, and one that is larger by the ratio, below them on the ground or above them. Gravity
+ * would move the large disc at `speed`, of which the drag on its diameter is its weight less buoyancy: the drag coefficient
+ * of discs is 1 or more. */
+static struct scene mixture(double ratio, double speed, bool above)
 {
-  struct scene scene = scene_crowd(60, 100, 1, 2.5, 0.1);
+  const double radius = 2, large = ratio * radius, density = 2;
+  const double room = 2 * large + 2 * radius;
+  const int width = (int)(2 * large + 30 * radius), height = (int)(2 * large + 40 * radius);
+  struct scene scene = scene_crowd(width, height, radius, 2.5 * radius, 0.1 * radius);
+  struct disc_spec *discs = scene.particles.discs;
   size_t kept = 0;
   for (size_t i = 0; i < scene.particles.count; i++)
-    if (scene.particles.discs[i].position[1] > 2 * ratio + 2 && scene.particles.discs[i].position[1] < 2 * ratio + 20)
-      scene.particles.discs[kept++] = scene.particles.discs[i];
+    if (above ? discs[i].position[1] < height - room : discs[i].position[1] > room) discs[kept++] = discs[i];
   scene.particles.count = scene.particles.listed = kept;
   scene.particles.fill.present = false;
-  scene_add_disc(&scene, ratio, 2, 30, ratio + 0.5);
-  for (size_t i = 0; i < kept; i++) scene.particles.discs[i].density = 2;
+  const double bottom = large + 0.5 * radius;
+  scene_add_disc(&scene, large, density, 0.5 * width, above ? height - bottom : bottom);
+  for (size_t i = 0; i < kept; i++) scene.particles.discs[i].density = density;
+  scene.particles.gravity[1] = -speed * speed / (M_PI * large * (density - 1));
+  return scene;
+}
+
+static struct scene on_a_large_one(double stiffness, double ratio)
+{
+  struct scene scene = mixture(ratio, 0.1, false);
+  set_stiffness(&scene, stiffness);
+  return scene;
+}
+
+static struct scene under_a_large_one(double stiffness, double ratio)
+{
+  struct scene scene = mixture(ratio, 0.1, true);
+  set_stiffness(&scene, stiffness);
+  return scene;
+}
+
+static struct scene on_a_large_one_by_speed(double speed, double ratio)
+{
+  struct scene scene = mixture(ratio, speed, false);
+  set_stiffness(&scene, 0);
   return scene;
 }
 
@@ -127,22 +166,43 @@ static bool map_cluster(struct edge *edge, struct status *status)
 
 bool edge_crowds(struct edge *edge, struct status *status)
 {
+  static const double stiffnesses[] = {0, 0.025, 0.25, 2.5, 25, 250}, speeds[] = {0.05, 0.1, 0.2, 0.4, 0.8};
   static const double weights[] = {1, 3, 10, 30, 100}, ratios[] = {2, 5, 10, 20};
-  struct crowd_map packing = {{.name = "packing pressed by its weight",
-                               .value = "deepest overlap over radius",
-                               .corner = "stiffness/weight",
-                               .threshold = 0.1},
-                              weights,
-                              5,
-                              4000,
-                              pressed};
-  struct crowd_map mixture = {{.name = "small discs on a large one",
-                               .value = "deepest overlap over the smaller radius",
-                               .corner = "stiffness/ratio of radii",
-                               .threshold = 0.1},
-                              ratios,
-                              4,
-                              3000,
-                              polydisperse};
-  return put_crowds(edge, &packing, status) && put_crowds(edge, &mixture, status) && map_cluster(edge, status);
+  static const char overlap[] = "deepest overlap over the smaller radius", corner[] = "stiffness/ratio of radii";
+  struct crowd_map all[] = {
+      {{.name = "packing pressed by its weight", .value = overlap, .corner = "stiffness/weight", .threshold = 0.1},
+       stiffnesses,
+       6,
+       weights,
+       5,
+       4000,
+       pressed},
+      {{.name = "small discs on a large one", .value = overlap, .corner = corner, .threshold = 0.1},
+       stiffnesses,
+       6,
+       ratios,
+       4,
+       4000,
+       on_a_large_one},
+      {{.name = "small discs under a large one", .value = overlap, .corner = corner, .threshold = 0.1},
+       stiffnesses,
+       6,
+       ratios,
+       4,
+       4000,
+       under_a_large_one},
+      {{.name = "small discs on a large one, by speed",
+        .value = overlap,
+        .corner = "speed/ratio of radii",
+        .threshold = 0.1},
+       speeds,
+       5,
+       ratios,
+       4,
+       3000,
+       on_a_large_one_by_speed},
+  };
+  for (size_t k = 0; k < sizeof all / sizeof all[0]; k++)
+    if (!put_crowds(edge, &all[k], status)) return false;
+  return map_cluster(edge, status);
 }

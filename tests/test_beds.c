@@ -1,6 +1,7 @@
 /* Beds of discs with a hydraulic radius: who bears the weight, how much fluid passes, fluidisation. */
 #include "drive.h"
 #include "scenes.h"
+#include "sim/load.h"
 #include "sim/simulation.h"
 #include "solid/lens.h"
 #include "stokes_array.h"
@@ -34,6 +35,40 @@ static double fastest(const struct discs *d)
   double max = 0;
   for (size_t i = 0; i < d->count; i++) max = fmax(max, hypot(d->vx[i], d->vy[i]));
   return max;
+}
+
+/* Small discs of R = 2 on the ground, and one of R = 40 above them. Gravity would move it at 0.1 cells/step, at a drag
+ * coefficient of 1. */
+static struct scene mixture(void)
+{
+  const double radius = 2, large = 40;
+  struct scene scene = scene_box(110, 150, 0.05, SIDES_CLOSED);
+  scene.fluid.zero_flux = true;
+  scene.particles.gravity[1] = -0.01 / (M_PI * large * (density - 1));
+  for (int k = 0; k < 6 * 24; k++)
+    scene_add_disc(&scene, radius, density, 2.5 + 4.5 * (k % 24) + 0.3 * (k / 24 % 2), 3 + 4.5 * (k / 24));
+  scene_add_disc(&scene, large, density, 54, 72);
+  const struct loads loads = loads_of(&scene);
+  load_set_stiffness(&scene, &loads, INFINITY);
+  return scene;
+}
+
+Test(beds, a_disc_twenty_times_larger_settles_among_small_ones_at_the_automatic_stiffness)
+{
+  struct scene scene = mixture();
+  struct simulation *simulation = start(&scene);
+  const struct discs *d = simulation_discs(simulation);
+  advance(simulation, 12000);
+  struct simulation_report report;
+  simulation_report(simulation, &report);
+  cr_expect_lt(report.max_overlap, scene.contact.overlap, "%g", report.max_overlap);
+  cr_expect_lt(fastest(d), 0.003, "%g", fastest(d));
+  const double lowest = 40, bed = lowest + 2 * 2;
+  cr_expect(d->y[d->count - 1] > lowest && d->y[d->count - 1] < bed, "%g", d->y[d->count - 1]);
+  for (size_t i = 0; i < d->count; i++)
+    cr_expect(d->y[i] > 0.99 * d->radius[i] && d->x[i] > 0.99 * d->radius[i] && d->x[i] < 110 - 0.99 * d->radius[i]);
+  simulation_destroy(simulation);
+  scene_clear(&scene);
 }
 
 /* Twenty discs in a closed box, as the pile of bench/README.md at half its resolution. */
