@@ -379,6 +379,26 @@ static struct scene floor_scene(const double gravity[2], double mu)
   return scene;
 }
 
+/* Each impulse of the floor changes the velocity by dv and the spin by 2 dv/R, so that the angle is twice the delay over R at
+ * any time. The angle is thus integrated over the sub-steps, as the position is. */
+Test(friction, a_sliding_disc_turns_by_twice_its_delay_over_its_radius)
+{
+  const double v0 = 0.05, start_x = 100;
+  const int steps = 100;
+  struct scene scene = floor_scene((const double[2]){0, -1e-4}, 0.3);
+  scene.particles.discs[0].velocity[0] = v0;
+  struct simulation *simulation = start(&scene);
+  const struct discs *d = simulation_discs(simulation);
+  advance(simulation, steps);
+  struct simulation_report report;
+  simulation_report(simulation, &report);
+  cr_assert_gt(report.max_substeps, 4);
+  const double delay = start_x + v0 * steps - d->x[0];
+  cr_expect_float_eq(fabs(d->angle[0]), 2 * delay / 10, 0.002 * delay / 5, "%g, not %g", d->angle[0], delay / 5);
+  simulation_destroy(simulation);
+  scene_clear(&scene);
+}
+
 /* Sliding at the speed v0 relative to the floor, without spin, a disc rolls after v0/(3 mu g), at 2/3 of v0. */
 Test(friction, a_disc_thrown_along_a_floor_rolls_after_v0_over_3_mu_g)
 {

@@ -61,12 +61,13 @@ void contacts_placed(struct contacts *contacts);
 bool stage_contact(struct contacts *contacts, const struct occupation *occupation, const struct exchange *exchange,
                    struct discs *discs, struct team *team);
 
-/* Position of disc i after the sub-steps; false for a disc without sub-steps. */
-static inline bool contacts_moved(const struct contacts *c, size_t i, double position[2])
+/* Centre (x, y) and angle of disc i after the sub-steps; false for a disc without sub-steps. */
+static inline bool contacts_moved(const struct contacts *c, size_t i, double place[3])
 {
   if (c->substeps == 1 || !c->is_moving[i]) return false;
-  position[0] = c->at.x[i];
-  position[1] = c->at.y[i];
+  place[0] = c->at.x[i];
+  place[1] = c->at.y[i];
+  place[2] = c->at.angle[i];
   return true;
 }
 

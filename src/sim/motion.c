@@ -13,14 +13,14 @@ static double into_box(const struct scene *scene, int axis, double at)
   return at >= size ? at - size : at;
 }
 
-/* Sets the new velocity and position. */
+/* Sets the new velocity, position and angle. */
 static void move_disc(const struct contacts *c, struct exchange *e, struct discs *d, size_t i)
 {
   exchange_finish(e, d, i);
-  d->angle[i] += d->omega[i];
-  if (d->motion[i] == DISC_FIXED) return;
-  double to[2] = {d->x[i] + d->vx[i], d->y[i] + d->vy[i]};
+  double to[3] = {d->x[i] + d->vx[i], d->y[i] + d->vy[i], d->angle[i] + d->omega[i]};
   const bool by_substeps = contacts_moved(c, i, to);
+  d->angle[i] = to[2];
+  if (d->motion[i] == DISC_FIXED) return;
   if (e->lag) exchange_change_lag(e, d, i, by_substeps ? 1.0 / c->substeps : 1, to);
   d->x[i] = into_box(c->scene, 0, to[0]);
   d->y[i] = into_box(c->scene, 1, to[1]);
