@@ -16,6 +16,7 @@ const struct bench *bench_at(size_t index)
        "how much of the force between close surfaces is resolved, and how accurate is sub-grid lubrication?",
        bench_lubrication},
       {"rebound", "how far does a disc rebound from a wall in viscous fluid?", bench_rebound},
+      {"grains", "how steep is a heap of discs, and how far does a column of them run out?", bench_grains},
       {"overlap", "how does the overlap area grow with distance, and how does the one by cells differ?", bench_overlap},
       {"stability", "what stays stable and accurate, and where does it end?", bench_stability},
   };

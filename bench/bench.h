@@ -22,8 +22,8 @@ struct bench {
   bench_run *run;
 };
 
-bench_run bench_accuracy, bench_contact, bench_drag, bench_lubrication, bench_occupation, bench_overlap, bench_rebound,
-    bench_run_alone, bench_stability, bench_step, bench_sweep;
+bench_run bench_accuracy, bench_contact, bench_drag, bench_grains, bench_lubrication, bench_occupation, bench_overlap,
+    bench_rebound, bench_run_alone, bench_stability, bench_step, bench_sweep;
 
 /* Prints the machine, and writes it as the first member of the report. */
 void bench_describe_machine(const struct bench_report *report);
