@@ -12,10 +12,17 @@
 #include <stdlib.h>
 
 static const double density = 2.5, spread = 0.2, packed = 0.84;
-static const double dry_speed = 0.25, wet_speed = 0.08; /* sqrt(2 g H_0) */
+static const double wet_speed = 0.08; /* sqrt(2 g H_0) */
 
 /* Touching: as close as 2 % of R, the order of overlaps in the collapse. */
 static const double touching = 0.02;
+
+/* sqrt(2 g H_0), dry. Without friction, discs at the far side of the box are squeezed out upwards at up to 1.8 times this
+ * speed, which has to remain below 0.346. */
+static double dry_speed(const struct column *c)
+{
+  return c->friction > 0 ? 0.25 : 0.15;
+}
 
 static bool draw_radii(const struct column *c, double *radius, double *jitter, struct status *status)
 {
@@ -75,7 +82,7 @@ static bool pouring(const struct column *c, double g, struct scene *scene, struc
   *scene = common(c, (int)c->width, (int)(level + (rows + 1) * spacing), g);
   scene->domain.side[SIDE_RIGHT].type = SIDE_SLIP;
   scene_dry(scene);
-  scene->contact.stiffness = stiffness_of(scene, dry_speed);
+  scene->contact.stiffness = stiffness_of(scene, dry_speed(c));
   add_floor(scene, c);
   for (int k = 0; k < c->discs; k++) {
     const double room = 0.5 * spacing - (1 + spread) * column_radius, *jitter = radius + c->discs + 2 * k;
@@ -197,9 +204,9 @@ bool column_run(struct column *c, struct status *status)
 {
   const double area = c->discs * M_PI * column_radius * column_radius * (1 + spread * spread / 3);
   c->width = 2 * column_radius * round(sqrt(area / packed / c->aspect) / (2 * column_radius));
-  const double height = c->width * c->aspect, speed = c->viscosity > 0 ? wet_speed : dry_speed;
+  const double height = c->width * c->aspect, speed = c->viscosity > 0 ? wet_speed : dry_speed(c);
   const double fall = height + floor_level(c);
-  const double g = dry_speed * dry_speed / (2 * fall), g_released = speed * speed / (2 * fall);
+  const double g = dry_speed(c) * dry_speed(c) / (2 * fall), g_released = speed * speed / (2 * fall);
   struct scene scene = common(c, (int)ceil(box_width(c)), (int)(floor_level(c) + 1.5 * height), g_released);
   const bool dry = c->viscosity == 0;
   if (dry) scene_dry(&scene);
