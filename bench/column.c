@@ -194,10 +194,11 @@ static void use_fluid(struct scene *scene)
   load_set_stiffness(scene, &loads, INFINITY);
 }
 
-/* Far beyond the front at the end. */
+/* Far beyond the front at the end; in fluid the run-out is shorter. */
 static double box_width(const struct column *c)
 {
-  return c->width * (3 + (c->aspect < 2 ? 4 * c->aspect : 6 * pow(c->aspect, 0.75)));
+  const double dry = c->width * (3 + (c->aspect < 2 ? 4 * c->aspect : 6 * pow(c->aspect, 0.75)));
+  return c->viscosity > 0 ? 0.5 * dry : dry;
 }
 
 bool column_run(struct column *c, struct status *status)
