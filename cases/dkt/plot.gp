@@ -1,5 +1,5 @@
-# Heights and falling speeds of the two discs for every combination of form, area and solve, with the reference points; the
-# contact laws; and frames of one run. Usage: gnuplot -c cases/dkt/plot.gp DIR; DIR holds the runs of the file `runs` (see cases/reproduce).
+# Heights and falling speeds of the two discs for every combination of form, area and solve, with the reference points; an
+# impact and falling speeds by the three contact laws; and frames of one run. Usage: gnuplot -c cases/dkt/plot.gp DIR; DIR holds the runs of the file `runs` (see cases/reproduce).
 if (ARGC != 1) { print "usage: gnuplot -c cases/dkt/plot.gp DIR   (DIR: the runs)"; exit status 2 }
 reference = system("dirname '" . ARG0 . "'") . "/reference.csv"
 
@@ -43,26 +43,46 @@ do for [offset in "3 0.1"] {
 }
 unset multiplot
 
-set terminal pngcairo size 1000, 420 font "sans,10"
+set terminal pngcairo size 1100, 520 font "sans,10"
 set output ARG1 . "/laws.png"
 laws = "overlap hertz linear"
-hue(k) = (k == 1) ? 0xc2481a : (k == 2) ? 0x2170be : 0x2f8f4e
-set multiplot layout 1, 2
-set title "one impact without fluid"
-set xlabel "time / steps"
-set ylabel "impulse a step / lattice units"
-set xrange [80:200]
-plot for [k=1:3] ARG1 . "/impact-" . word(laws, k) . "/particles.csv" using "step":(ours(1, column("contact_fx"))) with lines \
-  linewidth 4 - k linecolor rgb hue(k) dashtype k title word(laws, k)
-set title "the same laws in this case, from 3 cells"
+hue(k) = (k == 1) ? 0xf0b090 : (k == 2) ? 0x2170be : 0x202020
+width(k) = (k == 1) ? 5 : (k == 2) ? 2.2 : 1.4
+dash(k) = (k == 3) ? 2 : 1
+impact(k, which) = ARG1 . "/impact-" . word(laws, k) . which . "/particles.csv"
+fall(k, offset) = ARG1 . "/" . ((k == 1) ? "unified-lens-implicit" : "law-" . word(laws, k)) . "-" . offset . "/particles.csv"
+push(k) = "law " . word(laws, k)
+set multiplot
+set origin 0, 0
+set size 0.46, 1
+set title "one impact at 0.0027 cells/step, without fluid"
+set xlabel "steps since the first touch"
+set ylabel "contact force / (10^{-3} {/Symbol r} cells^3/step^2)"
+set xrange [-10:140]
+set yrange [0:15]
+set key top right samplen 3
+set label 1 "without damping" at 62, 14.1 center
+set label 2 "damping 0.34" at 42, 2.6 center
+# The force of a step is the mean over this step.
+plot for [k=1:3] impact(k, "") using (column("step") - 10.5):(ours(1, 1e3 * column("contact_fx"))) with lines linecolor rgb hue(k) linewidth width(k) dashtype dash(k) title push(k), \
+     for [k=1:3] impact(k, "-undamped") using (column("step") - 10.5):(ours(1, 1e3 * column("contact_fx"))) with lines linecolor rgb hue(k) linewidth width(k) dashtype dash(k) notitle
+unset label 1
+unset label 2
+set xrange [0:5]
+set yrange [*:*]
 set xlabel "t / s"
 set ylabel "vertical velocity / (cm/s)"
-set xrange [0:5]
-set key bottom right
-plot for [k=1:3] ARG1 . "/law-" . word(laws, k) . "-3/particles.csv" using (column("step") * dt):(ours(0, column("vy") * dx / dt)) with lines \
-       linewidth 4 - k linecolor rgb hue(k) dashtype k title "trailing, " . word(laws, k), \
-     for [k=1:3] ARG1 . "/law-" . word(laws, k) . "-3/particles.csv" using (column("step") * dt):(ours(1, column("vy") * dx / dt)) with lines \
-       linewidth 2 linecolor rgb hue(k) dashtype k title "leading, " . word(laws, k)
+do for [n=1:2] {
+  offset = word("3 0.1", n)
+  set origin 0.46, (n == 1) ? 0.5 : 0
+  set size 0.54, 0.5
+  set title "drafting, kissing, tumbling: start " . offset . " cells apart across gravity"
+  set key bottom right samplen 3
+  plot for [k=1:3] fall(k, offset) using (column("step") * dt):(ours(0, column("vy") * dx / dt)) with lines linecolor rgb hue(k) linewidth width(k) dashtype dash(k) notitle, \
+       for [k=1:3] fall(k, offset) using (column("step") * dt):(ours(1, column("vy") * dx / dt)) with lines linecolor rgb hue(k) linewidth width(k) dashtype dash(k) notitle, \
+       reference using 4:((n == 1) ? theirs("uy", "trailing") : NaN) with points pointtype 7 linecolor rgb "black" title ((n == 1) ? "trailing, published" : ""), \
+       reference using 4:((n == 1) ? theirs("uy", "leading") : NaN) with points pointtype 6 linecolor rgb "black" title ((n == 1) ? "leading, published" : "")
+}
 unset multiplot
 
 reset
