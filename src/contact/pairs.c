@@ -6,7 +6,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { RECENT = 512 }; /* size of the cache of tested pairs of a band */
+enum {
+  RECENT = 512, /* size of the cache of tested pairs of a band */
+  CHUNK = 256   /* discs of which one thread finds the displacement at once */
+};
 
 /* Largest R - R_h. */
 static double largest_rim(const struct discs *d)
@@ -170,12 +173,26 @@ static bool join(struct pair_list *list, const struct discs *d, struct status *s
   return true;
 }
 
-/* True if disc i has moved by more than half of the margin or its position is NAN. */
-static bool has_moved(const struct pair_list *list, const struct discs *d, size_t i)
+/* Distance along a periodic axis of this length; INFINITY: not periodic. */
+static inline double apart(double a, double b, double length)
 {
-  const double dx = nearest_image(d->x[i] - list->x[i], list->size[0], list->periodic[0]);
-  const double dy = nearest_image(d->y[i] - list->y[i], list->size[1], list->periodic[1]);
-  return !(dx * dx + dy * dy <= pairs_margin * pairs_margin / 4);
+  const double d = fabs(a - b), around = fabs(length - d);
+  return d < around ? d : around;
+}
+
+/* True if one of the discs from `first` on has moved by more than half of the margin, or its position is NAN. */
+static bool any_has_moved(const struct pair_list *list, const struct discs *d, size_t first, size_t end)
+{
+  const double limit = pairs_margin * pairs_margin / 4, infinite = (double)INFINITY;
+  const double width = list->periodic[0] ? list->size[0] : infinite,
+               height = list->periodic[1] ? list->size[1] : infinite;
+  int moved = 0;
+#pragma omp simd reduction(| : moved)
+  for (size_t i = first; i < end; i++) {
+    const double dx = apart(d->x[i], list->x[i], width), dy = apart(d->y[i], list->y[i], height);
+    moved |= !(dx * dx + dy * dy <= limit);
+  }
+  return moved;
 }
 
 bool pairs_update(struct pair_list *list, const struct occupation *o, const struct discs *d, struct team *team,
@@ -183,8 +200,8 @@ bool pairs_update(struct pair_list *list, const struct occupation *o, const stru
 {
   struct status status;
 #pragma omp for schedule(static)
-  for (size_t i = 0; i < d->count; i++)
-    if (has_moved(list, d, i)) {
+  for (size_t first = 0; first < d->count; first += CHUNK)
+    if (any_has_moved(list, d, first, first + CHUNK < d->count ? first + CHUNK : d->count)) {
 #pragma omp atomic write
       list->stale = true;
     }
