@@ -46,8 +46,10 @@ static double floor_level(const struct column *c)
 static void add_floor(struct scene *scene, const struct column *c)
 {
   if (!c->rough) return;
-  for (double x = column_radius; x <= scene->domain.size[0] - column_radius; x += 2 * column_radius)
-    scene_add_disc(scene, column_radius, density, x, floor_level(c) - column_radius)->motion = DISC_FIXED;
+  const int count = (int)(scene->domain.size[0] / (2 * column_radius));
+  for (int k = 0; k < count; k++)
+    scene_add_disc(scene, column_radius, density, (2 * k + 1) * column_radius, floor_level(c) - column_radius)->motion =
+        DISC_FIXED;
 }
 
 /* Stiffness for an overlap of 1 % of R in an impact at an eighth of the speed of free fall from H_0: under 4 % in any. */
@@ -86,8 +88,9 @@ static bool pouring(const struct column *c, double g, struct scene *scene, struc
   add_floor(scene, c);
   for (int k = 0; k < c->discs; k++) {
     const double room = 0.5 * spacing - (1 + spread) * column_radius, *jitter = radius + c->discs + 2 * k;
-    scene_add_disc(scene, radius[k], density, (k % columns + 0.5) * spacing + room * jitter[0],
-                   level + (k / columns + 0.5) * spacing + room * jitter[1]);
+    const int row = k / columns, column = k % columns;
+    scene_add_disc(scene, radius[k], density, (column + 0.5) * spacing + room * jitter[0],
+                   level + (row + 0.5) * spacing + room * jitter[1]);
   }
   free(radius);
   return true;
