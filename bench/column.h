@@ -27,7 +27,7 @@ struct column {
   double max_overlap;   /* over the smaller radius, after the release */
 };
 
-/* Sets what follows viscosity. */
+/* Pours and releases the column, and sets the members after `viscosity`. */
 bool column_run(struct column *column, struct status *status);
 
 #endif

@@ -81,9 +81,8 @@ static struct scene pressed(double stiffness, double weight)
   return scene;
 }
 
-/* A crowd of discs of R = 2 and density 2, and one that is larger by the ratio, below them on the ground or above them. Gravity
- * would move the large disc at `speed`, of which the drag on its diameter is its weight less buoyancy: the drag coefficient
- * of discs is 1 or more. */
+/* A crowd of discs of R = 2 and density 2, and one disc that is larger by the ratio, on the ground or above them. Gravity
+ * makes its weight less buoyancy equal to its drag at `speed` with a drag coefficient of 1; that of discs is 1 or more. */
 static struct scene mixture(double ratio, double speed, bool above)
 {
   const double radius = 2, large = ratio * radius, density = 2;

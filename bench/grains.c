@@ -1,8 +1,8 @@
 /* How steep is a heap of dry discs, how far does a column of discs run out, and what does fluid change?
  *
  * Angle of repose: of the free surface of the heap that a released column of 500 discs, as high as half its width, leaves on a plane
- * ground. The whole free surface counts, by least squares; friction of the ground is that of the discs, so that without
- * friction there is no heap.
+ * ground. The slope is a least-squares fit to the whole free surface. The ground has the friction of the discs: without friction
+ * there is no heap.
  *
  * Run-out: Staron & Hinch, J. Fluid Mech. 545 (2005) 1, have for discs on a plane, with a restitution of 0.5,
  * (x - x_0)/x_0 = 2.5 a for a = H_0/x_0 below 2, about 3.25 a^0.7 above. x is the front of the mass of discs that touch: discs
@@ -168,7 +168,7 @@ static bool report_exponents(const struct kind *kind, double exponents[COLUMN_SE
                              const struct bench_report *report, struct status *status)
 {
   static const char *const names[FITS] = {"low", "high", "above"};
-  /* of few discs, the widths of tall columns are those of a few diameters */
+  /* tall columns of few discs are only a few diameters wide */
   const double bar = report->quick ? 0.3 : 0.1;
   printf("%-20s", kind->name);
   separate(report, first);

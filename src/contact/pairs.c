@@ -8,7 +8,7 @@
 
 enum {
   RECENT = 512, /* size of the cache of tested pairs of a band */
-  CHUNK = 256   /* discs of which one thread finds the displacement at once */
+  CHUNK = 256   /* discs whose displacements one thread compares at once */
 };
 
 /* Largest R - R_h. */
